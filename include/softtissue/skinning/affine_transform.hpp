@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// x -> A x + t.
+///
+/// What        one affine map of space, the transform of a joint or of a skinned vertex.
+/// Shapes      linear 3x3 [-], translation 3 [m].
+/// Tests       tests/unit/skinning/affine_transform_test.cpp
+#pragma once
+
+#include <softtissue/core/notation.hpp>
+#include <softtissue/core/scalar.hpp>
+
+namespace softtissue {
+
+template <FieldScalar S>
+struct AffineTransform {
+    using Scalar = S;
+
+    Matrix3<Scalar> linear = Matrix3<Scalar>::Identity();
+    Vector3<Scalar> translation = Vector3<Scalar>::Zero();
+
+    /// A x + t.
+    Vector3<Scalar> operator()(const Vector3<Scalar>& x) const { return linear * x + translation; }
+
+    /// The map that applies `inner` first.
+    AffineTransform operator*(const AffineTransform& inner) const {
+        return {linear * inner.linear, linear * inner.translation + translation};
+    }
+};
+
+}  // namespace softtissue

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// One pose of a skeleton as SMPL and AMASS store it.
+///
+/// What        local rotation of each joint relative to its parent, and a translation added after posing.
+/// Shapes      rotation_vectors 3 x joints [rad] (axis times angle), translation 3 [m].
+/// Source      Loper et al. 2015 (SMPL), sec. 3; Romero et al. 2020, sec. 3.1.
+/// Tests       tests/unit/skinning/joint_transforms_test.cpp
+#pragma once
+
+#include <softtissue/core/notation.hpp>
+#include <softtissue/core/scalar.hpp>
+
+namespace softtissue {
+
+template <FieldScalar S>
+struct Pose {
+    using Scalar = S;
+
+    Matrix3X<Scalar> rotation_vectors;
+    Vector3<Scalar> translation = Vector3<Scalar>::Zero();
+
+    /// The rest pose of `num_joints` joints.
+    static Pose rest(Index num_joints) {
+        return {Matrix3X<Scalar>::Zero(3, num_joints), Vector3<Scalar>::Zero()};
+    }
+};
+
+}  // namespace softtissue
