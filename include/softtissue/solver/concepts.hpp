@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// What solves Newton's linear systems.
+///
+/// What        solve(H, rhs, relative_tolerance, p, executor): p with |H p - rhs| <= relative_tolerance |rhs|, or the answer
+///             that H is not positive definite (then p is unspecified, and Newton asks again with a filtered H).
+/// Tests       tests/unit/solver/direct_solver_test.cpp, tests/unit/solver/frozen_factor_cg_test.cpp
+#pragma once
+
+#include <softtissue/core/executor.hpp>
+#include <softtissue/core/notation.hpp>
+#include <softtissue/sparse/block_matrix.hpp>
+
+#include <concepts>
+
+namespace softtissue {
+
+struct LinearSolveResult {
+    bool is_positive_definite;
+    int iterations;
+};
+
+template <class T>
+concept NewtonLinearSolver =
+    requires(T& solver, const BlockMatrix<typename T::Scalar>& H, const VectorX<typename T::Scalar>& rhs,
+             typename T::Scalar relative_tolerance, VectorX<typename T::Scalar>& p, const SequentialExecutor& executor) {
+        { solver.solve(H, rhs, relative_tolerance, p, executor) } -> std::same_as<LinearSolveResult>;
+    };
+
+}  // namespace softtissue

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Newton's method with a backtracking line search, exact where the Hessian is positive definite, filtered where not.
+///
+/// What        minimises an Objective over the free vertices, in place.
+/// Method      each iteration tries the exact Hessian first; if it is indefinite, the one filtered per stencil. Halving line
+///             search on the energy (Armijo), full step first. Never increases the energy beyond its round-off.
+/// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
+///             gradient_tolerance: largest gradient component; or a status that says why not.
+/// Refuses     nothing: outcomes are in the SolveReport. Under -ffinite-math-only NaN checks vanish: a compile error.
+/// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter); Nolte et al. 2026, sec. 3.2
+/// Tests       tests/unit/solver/newton_test.cpp, tests/scenario/static_solve_test.cpp
+#pragma once
+
+#include <softtissue/core/config.hpp>
+#include <softtissue/core/notation.hpp>
+#include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/psd_filter.hpp>
+#include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ && !defined(SOFTTISSUE_ALLOW_FINITE_MATH)
+#error "softtissue: solvers detect NaN; compile without -ffast-math/-ffinite-math-only or define SOFTTISSUE_ALLOW_FINITE_MATH"
+#endif
+
+namespace softtissue {
+
+template <RealScalar S>
+struct NewtonOptions {
+    int max_iterations = 100;
+    S step_tolerance = S(1e-9);       ///< [m]
+    S gradient_tolerance = S(0);      ///< [N]; 0: not used
+    S linear_tolerance = S(1e-3);     ///< relative residual asked of iterative linear solvers
+    PsdFilter filter = PsdFilter::absolute;
+    int max_halvings = 40;
+};
+
+/// What an observer sees before each iteration; it returns false to cancel.
+template <RealScalar S>
+struct NewtonProgress {
+    int iteration;
+    S energy;
+    S residual;
+    S step;
+};
+
+/// Watches nothing and never cancels.
+struct NoObserver {
+    template <class Progress>
+    bool operator()(const Progress&) const {
+        return true;
+    }
+};
+
+namespace detail {
+
+/// One Newton solve; see minimise().
+template <class ObjectiveType, class LinearSolver, class Observer>
+class NewtonIteration {
+public:
+    using Scalar = typename ObjectiveType::Scalar;
+
+    NewtonIteration(ObjectiveType& objective, LinearSolver& linear_solver, Matrix3X<Scalar>& d,
+                    const NewtonOptions<Scalar>& options, const Observer& observer)
+        : objective_(objective), linear_solver_(linear_solver), d_(d), options_(options), observer_(observer) {}
+
+    SolveReport<Scalar> run() {
+        report_.energy = energy_at(d_);
+        refresh_gradient();
+        if (!std::isfinite(report_.energy) || !std::isfinite(report_.residual)) {
+            return ended(SolveStatus::not_finite);
+        }
+        while (true) {
+            if (report_.residual <= options_.gradient_tolerance) {
+                return ended(SolveStatus::converged);
+            }
+            if (!observer_(NewtonProgress<Scalar>{report_.iterations, report_.energy, report_.residual, report_.step})) {
+                return ended(SolveStatus::cancelled);
+            }
+            if (report_.iterations == options_.max_iterations) {
+                return ended(SolveStatus::iteration_limit);
+            }
+            bool is_exact = true;
+            if (!find_direction(is_exact)) {
+                return ended(SolveStatus::linear_solver_failed);
+            }
+            const Scalar last_residual = report_.residual;
+            const StepOutcome outcome = take_step();
+            if (outcome == StepOutcome::none) {
+                return ended(SolveStatus::line_search_stalled);
+            }
+            refresh_gradient();
+            if (direction_.cwiseAbs().maxCoeff() <= options_.step_tolerance) {
+                return ended(is_exact ? SolveStatus::converged : SolveStatus::saddle_point);
+            }
+            if (outcome == StepOutcome::below_resolution && !(report_.residual < last_residual)) {
+                return ended(SolveStatus::precision_limit);
+            }
+        }
+    }
+
+private:
+    enum class StepOutcome { decreased, below_resolution, none };
+
+    SolveReport<Scalar> ended(SolveStatus status) {
+        report_.status = status;
+        return report_;
+    }
+
+    Scalar energy_at(const Matrix3X<Scalar>& d) {
+        ++report_.energy_evaluations;
+        return objective_.energy(d);
+    }
+
+    void refresh_gradient() {
+        gradient_ = objective_.gradient(d_);
+        // maxCoeff skips NaN on some paths; the sum does not
+        report_.residual = std::isfinite(gradient_.sum()) && gradient_.size() > 0
+                               ? gradient_.cwiseAbs().maxCoeff()
+                               : gradient_.sum();
+    }
+
+    bool find_direction(bool& is_exact) {
+        const VectorX<Scalar> rhs = -gradient_;
+        is_exact = solve_with(PsdFilter::none, rhs);
+        if (!is_exact) {
+            ++report_.filtered_iterations;
+            if (!solve_with(options_.filter, rhs)) {
+                return false;
+            }
+        }
+        ++report_.iterations;
+        return true;
+    }
+
+    bool solve_with(PsdFilter filter, const VectorX<Scalar>& rhs) {
+        const LinearSolveResult result = linear_solver_.solve(objective_.hessian(d_, filter), rhs, options_.linear_tolerance,
+                                                              direction_, objective_.executor());
+        report_.linear_iterations += result.iterations;
+        return result.is_positive_definite && std::isfinite(direction_.sum()) && gradient_.dot(direction_) <= Scalar(0);
+    }
+
+    /// The energy is a sum over many cells: differences below this are noise.
+    Scalar energy_resolution() const {
+        return Scalar(32) * std::numeric_limits<Scalar>::epsilon() * std::abs(report_.energy);
+    }
+
+    StepOutcome take_step() {
+        const Scalar slope = gradient_.dot(direction_);
+        const Scalar sufficient_decrease = Scalar(1e-4);
+        Scalar length(1);
+        for (int halving = 0; halving <= options_.max_halvings; ++halving, length *= Scalar(0.5)) {
+            trial_ = d_;
+            objective_.prescribed().add_into(direction_, length, trial_);
+            const Scalar energy = energy_at(trial_);
+            const bool is_resolved = -length * slope > energy_resolution();
+            if (energy <= report_.energy + sufficient_decrease * length * slope + (is_resolved ? Scalar(0) : energy_resolution())) {
+                d_.swap(trial_);
+                report_.energy = energy;
+                report_.step = length * direction_.cwiseAbs().maxCoeff();
+                return is_resolved ? StepOutcome::decreased : StepOutcome::below_resolution;
+            }
+        }
+        return StepOutcome::none;
+    }
+
+    ObjectiveType& objective_;
+    LinearSolver& linear_solver_;
+    Matrix3X<Scalar>& d_;
+    const NewtonOptions<Scalar>& options_;
+    const Observer& observer_;
+    SolveReport<Scalar> report_;
+    VectorX<Scalar> gradient_, direction_;
+    Matrix3X<Scalar> trial_;
+};
+
+}  // namespace detail
+
+/// Minimises `objective` over the free columns of `d`, 3 x vertices [m], starting from d; the prescribed columns are given.
+/// d is left at the best accepted point whatever the status.
+template <class ObjectiveType, NewtonLinearSolver LinearSolver, class Observer = NoObserver>
+SolveReport<typename ObjectiveType::Scalar> minimise(ObjectiveType& objective, LinearSolver& linear_solver,
+                                                     Matrix3X<typename ObjectiveType::Scalar>& d,
+                                                     const NewtonOptions<typename ObjectiveType::Scalar>& options = {},
+                                                     const Observer& observer = {}) {
+    return detail::NewtonIteration<ObjectiveType, LinearSolver, Observer>(objective, linear_solver, d, options, observer).run();
+}
+
+}  // namespace softtissue

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// A symmetric sparse matrix of 3x3 blocks on a fixed pattern, readable as an Eigen sparse matrix.
+///
+/// What        values of both triangles, written block by block without a search, without triplets.
+/// Shapes      3 n x 3 n for a pattern of n columns; symmetric by contract (both triangles are written by the assembly).
+/// Layout      column-major compressed; in scalar column 3 j + c the block of rank r occupies entries 3 r .. 3 r + 2.
+/// Memory      9 (sizeof(Scalar) + 4) bytes a block.
+/// Tests       tests/unit/sparse/block_matrix_test.cpp
+#pragma once
+
+#include <softtissue/core/executor.hpp>
+#include <softtissue/core/notation.hpp>
+#include <softtissue/core/scalar.hpp>
+#include <softtissue/sparse/block_pattern.hpp>
+
+#include <Eigen/SparseCore>
+
+namespace softtissue {
+
+template <RealScalar S>
+class BlockMatrix {
+public:
+    using Scalar = S;
+    using SparseMatrix = Eigen::SparseMatrix<Scalar, Eigen::ColMajor, int>;
+
+    BlockMatrix() = default;
+
+    explicit BlockMatrix(const BlockPattern& pattern) : pattern_(pattern) {
+        const Index n = 3 * pattern.num_columns();
+        matrix_.resize(n, n);
+        matrix_.resizeNonZeros(9 * pattern.num_blocks());
+        int* const outer = matrix_.outerIndexPtr();
+        int* const inner = matrix_.innerIndexPtr();
+        for (Index j = 0; j < pattern.num_columns(); ++j) {
+            const std::span<const std::int32_t> rows = pattern.rows(j);
+            for (int c = 0; c < 3; ++c) {
+                Index entry = column_begin(j, c);
+                outer[3 * j + c] = static_cast<int>(entry);
+                for (const std::int32_t i : rows) {
+                    for (int d = 0; d < 3; ++d) {
+                        inner[entry++] = 3 * i + d;
+                    }
+                }
+            }
+        }
+        outer[n] = static_cast<int>(9 * pattern.num_blocks());
+        set_zero();
+    }
+
+    const BlockPattern& pattern() const { return pattern_; }
+    const SparseMatrix& matrix() const { return matrix_; }
+
+    void set_zero() { matrix_.coeffs().setZero(); }
+
+    /// Adds `block` at row pattern().rows(j)[rank], column j.
+    void add(Index j, std::int32_t rank, const Matrix3<Scalar>& block) {
+        Scalar* const values = matrix_.valuePtr();
+        for (int c = 0; c < 3; ++c) {
+            Scalar* const column = values + column_begin(j, c) + 3 * rank;
+            column[0] += block(0, c);
+            column[1] += block(1, c);
+            column[2] += block(2, c);
+        }
+    }
+
+    /// y = (this) x. Each entry of y is one dot product with a column, so the bits do not depend on the executor.
+    template <Executor E>
+    void multiply_into(const VectorX<Scalar>& x, VectorX<Scalar>& y, const E& executor) const {
+        y.resize(matrix_.cols());
+        executor.for_each_range(pattern_.num_columns(), [&](Index begin, Index end) {
+            const Scalar* const values = matrix_.valuePtr();
+            for (Index j = begin; j < end; ++j) {
+                Vector3<Scalar> sum = Vector3<Scalar>::Zero();
+                const std::span<const std::int32_t> rows = pattern_.rows(j);
+                for (int c = 0; c < 3; ++c) {
+                    const Scalar* column = values + column_begin(j, c);
+                    for (const std::int32_t i : rows) {
+                        const Scalar* const xi = x.data() + 3 * i;
+                        sum(c) += column[0] * xi[0] + column[1] * xi[1] + column[2] * xi[2];
+                        column += 3;
+                    }
+                }
+                y.template segment<3>(3 * j) = sum;
+            }
+        });
+    }
+
+private:
+    Index column_begin(Index j, int c) const {
+        return 9 * pattern_.offset(j) + c * 3 * (pattern_.offset(j + 1) - pattern_.offset(j));
+    }
+
+    BlockPattern pattern_;
+    SparseMatrix matrix_;
+};
+
+}  // namespace softtissue
