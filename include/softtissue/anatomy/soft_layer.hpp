@@ -60,6 +60,8 @@ struct SoftLayerReport {
     Index vertices_clamped = 0;       ///< thickness brought into its bounds
     Index vertices_reduced = 0;       ///< thickness reduced because cells would have been invalid
     int reduction_rounds = 0;
+    /// Pairs of triangles of the inner surface that cross it or the skin; only where the skin crosses itself.
+    Index crossings_left = 0;
     S smallest_cone_cosine = S(0);        ///< over the region: best possible cosine of the worst vertex
     S smallest_relative_jacobian = S(0);  ///< over the cells, in the measure of validity_margin
     S thickness_min = S(0);
