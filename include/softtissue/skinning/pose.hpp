@@ -5,7 +5,7 @@
 /// What        local rotation of each joint relative to its parent, and a translation added after posing.
 /// Shapes      rotation_vectors 3 x joints [rad] (axis times angle), translation 3 [m].
 /// Source      Loper et al. 2015 (SMPL), sec. 3; Romero et al. 2020, sec. 3.1.
-/// Tests       tests/unit/skinning/joint_transforms_test.cpp
+/// Tests       tests/unit/skinning/pose_test.cpp
 #pragma once
 
 #include <softtissue/core/notation.hpp>

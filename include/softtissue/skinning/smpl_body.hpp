@@ -7,7 +7,9 @@
 ///             joint_regressor joints x n;
 ///             shape_directions 3n x num_shapes [m per standard deviation], row 3v + d;
 ///             pose_directions 3n x 9 (joints - 1) [m], sparse; column 9 (j - 1) + 3 a + b multiplies (R_j - I)[a, b].
-/// Refuses     validate(): shapes that do not fit together, values that are not finite (InvalidInput names the array).
+///             The root is joint 0: its rotation moves the whole body and has no pose blend shape.
+/// Refuses     validate(): shapes that do not fit together, values that are not finite, another root
+///             (InvalidInput names the array).
 /// Source      Loper et al. 2015 (SMPL); Romero et al. 2020, eq. (1).
 /// Departs     std headers only elsewhere in skinning/; here Eigen/SparseCore, for the pose blend shapes (93 % zeros on real bodies).
 /// Tests       tests/unit/skinning/smpl_body_test.cpp
@@ -20,6 +22,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -48,6 +51,7 @@ struct SmplBody {
         const Index n = num_vertices();
         const Index joints = num_joints();
         require(n > 0, source, ": v_template has no vertices");
+        require(tree.root() == 0, source, ": the root is joint ", tree.root(), ", expected 0");
         require_shape(source, "weights", weights.num_vertices(), weights.num_joints(), n, joints);
         require_shape(source, "J_regressor", joint_regressor.rows(), joint_regressor.cols(), joints, n);
         require_shape(source, "shapedirs (3n x shapes)", shape_directions.rows(), shape_directions.cols(), 3 * n,

@@ -5,7 +5,8 @@
 /// What        compressed rows of (joint, weight), each row summing to one.
 /// Shapes      num_vertices rows over num_joints joints; dense form num_vertices x num_joints.
 /// Refuses     a weight that is not finite or negative, a row that does not sum to one within sum_tolerance
-///             (InvalidInput names vertex and value). Rows within the tolerance are normalised exactly.
+///             (InvalidInput names vertex and value). Rows within the tolerance are normalised; rows that
+///             sum to one within rounding stay as they are, so that going through dense() changes no bit.
 /// Tests       tests/unit/skinning/weights_test.cpp
 #pragma once
 
@@ -15,6 +16,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -52,8 +54,11 @@ public:
             }
             require(std::abs(double(sum) - 1.0) <= sum_tolerance, "weights of vertex ", v, " sum to ", sum,
                     ", expected 1");
-            for (size_t k = first; k < entries_.size(); ++k) {
-                entries_[k].weight /= sum;
+            const Scalar rounding = Scalar(entries_.size() - first) * std::numeric_limits<Scalar>::epsilon();
+            if (std::abs(sum - Scalar(1)) > rounding) {
+                for (size_t k = first; k < entries_.size(); ++k) {
+                    entries_[k].weight /= sum;
+                }
             }
             offsets_.push_back(entries_.size());
         }
