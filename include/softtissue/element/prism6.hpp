@@ -116,7 +116,8 @@ struct Prism6 {
             natural(a, a + 4) = top;
         }
         natural.row(2) << -lambda.transpose() / Scalar(2), lambda.transpose() / Scalar(2);
-        const Matrix3<Scalar> dX_dxi = X * natural.transpose();
+        const Nodes<Scalar> local = X.colwise() - X.col(0);  // far from the origin, the sum would cancel
+        const Matrix3<Scalar> dX_dxi = local * natural.transpose();
         return dual_basis(dX_dxi) * natural;
     }
 
