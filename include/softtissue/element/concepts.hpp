@@ -15,7 +15,8 @@
 ///                                   sufficient for a positive Jacobian everywhere in the cell
 /// and, optionally, for boundaries and for the laws:
 ///   E::faces                        array of ElementFace
-///   E::symmetries                   node orders of the same cell: node k of order s is node symmetries[s][k] of the first
+///   E::symmetries                   node orders of the same cell: node k of order s is node symmetries[s][k] of the
+///                                   first
 ///
 /// Laws (softtissue/testing/element_laws.hpp): partition of unity (sum_i g_i = 0), linear reproduction
 /// (sum_i X_i g_i^T = I), shape integrals sum to the volume, shape gradients are the derivatives of the
@@ -53,17 +54,16 @@ struct ElementFace {
 
 /// One constant deformation gradient per cell; see the file comment for the members and the laws.
 template <class E, class Scalar = double>
-concept Element =
-    std::is_empty_v<E> && requires(const NodePositions<E, Scalar>& X, const Vector3<Scalar>& p) {
-        { E::num_nodes } -> std::convertible_to<int>;
-        { E::rest_volume(X) } -> std::same_as<Scalar>;
-        { E::gradient_operator(X) } -> std::same_as<NodePositions<E, Scalar>>;
-        { E::shape_integrals(X) } -> std::same_as<NodeValues<E, Scalar>>;
-        { E::shape_values(p) } -> std::same_as<NodeValues<E, Scalar>>;
-        { E::shape_gradients(X, p) } -> std::same_as<NodePositions<E, Scalar>>;
-        { E::position(X, p) } -> std::same_as<Vector3<Scalar>>;
-        { E::natural_coordinates(X, p) } -> std::same_as<NaturalCoordinates<Scalar>>;
-        { E::smallest_jacobian_bound(X) } -> std::same_as<Scalar>;
-    };
+concept Element = std::is_empty_v<E> && requires(const NodePositions<E, Scalar>& X, const Vector3<Scalar>& p) {
+    { E::num_nodes } -> std::convertible_to<int>;
+    { E::rest_volume(X) } -> std::same_as<Scalar>;
+    { E::gradient_operator(X) } -> std::same_as<NodePositions<E, Scalar>>;
+    { E::shape_integrals(X) } -> std::same_as<NodeValues<E, Scalar>>;
+    { E::shape_values(p) } -> std::same_as<NodeValues<E, Scalar>>;
+    { E::shape_gradients(X, p) } -> std::same_as<NodePositions<E, Scalar>>;
+    { E::position(X, p) } -> std::same_as<Vector3<Scalar>>;
+    { E::natural_coordinates(X, p) } -> std::same_as<NaturalCoordinates<Scalar>>;
+    { E::smallest_jacobian_bound(X) } -> std::same_as<Scalar>;
+};
 
 }  // namespace softtissue

@@ -4,18 +4,19 @@
 ///
 /// What        exact volume, best-fit gradient operator, shape functions and their inverse map
 /// Equation    N_i = lambda_i (1 - zeta) / 2, N_{i+3} = lambda_i (1 + zeta) / 2, i = 0, 1, 2;
-///             det dX/d(lambda_1, lambda_2, s) = sum_k sum_i B_k(s) lambda_i n_k . d_i, s = (1 + zeta) / 2, B_k the quadratic
-///             Bernstein polynomials, d_i = X_{i+3} - X_i, n_0 and n_2 the normals (e_1 x e_2) of the two triangles and n_1
-///             their mixed product;  V = sum_k sum_i n_k . d_i / 18;
+///             det dX/d(lambda_1, lambda_2, s) = sum_k sum_i B_k(s) lambda_i n_k . d_i, s = (1 + zeta) / 2, B_k the
+///             quadratic Bernstein polynomials, d_i = X_{i+3} - X_i, n_0 and n_2 the normals (e_1 x e_2) of the two
+///             triangles and n_1 their mixed product;  V = sum_k sum_i n_k . d_i / 18;
 ///             g_i = M^-1 int N_i (X - c) dX, M = int (X - c)(X - c)^T dX: the gradient of the affine map that fits the
 ///             cell's own map best over the rest cell. All integrals are closed forms of the nine n_k . d_i, exact.
 /// Shapes      X 3x6 [m]; natural coordinates xi = (lambda_1, lambda_2, zeta), lambda_0 = 1 - lambda_1 - lambda_2,
 ///             zeta in [-1, 1]
 /// Node order  0-2 one triangle, counter-clockwise seen from the other; 3-5 the nodes facing them
-/// Valid       every X whose nine n_k . d_i are positive (sufficient, not necessary), however thin: the fit is done in the
-///             frame of the mean prism, where M is well conditioned. CellMesh::validate refuses the others.
+/// Valid       every X whose nine n_k . d_i are positive (sufficient, not necessary), however thin: the fit is done in
+///             the frame of the mean prism, where M is well conditioned. CellMesh::validate refuses the others.
 /// Limits      one gradient a cell leaves six hourglass modes: 9 of the 18 nodal freedoms are seen, 3 are translations.
-///             g is not the volume average of dN/dX: they agree for right prisms and differ by up to 60 % on sheared ones.
+///             g is not the volume average of dN/dX: they agree for right prisms and differ by up to 60 % on sheared
+///             ones.
 /// Source      Nolte et al. 2026, eq. (1)-(3), with the fit integrated over the cell
 /// Cost        gradient operator about 900 flop, no branch, no loop over quadrature points
 /// Tests       tests/unit/element/prism6_test.cpp, tests/laws/element_laws_test.cpp
@@ -84,7 +85,7 @@ struct Prism6 {
     template <class Scalar>
     static Values<Scalar> shape_integrals(const Nodes<Scalar>& X) {
         const Matrix3<Scalar> jacobian = bernstein_jacobians(X);
-        // int B_k (1 - s) ds = (3, 2, 1) / 12 and, for s, reversed; int lambda_i lambda_l dlambda = (1 + delta_il) / 24.
+        // int B_k (1 - s) ds = (3, 2, 1) / 12, reversed for s; int lambda_i lambda_l dlambda = (1 + delta_il) / 24.
         Eigen::Matrix<Scalar, 2, 3> weights;
         weights << Scalar(3), Scalar(2), Scalar(1), Scalar(1), Scalar(2), Scalar(3);
         const Eigen::Matrix<Scalar, 3, 2> q = (weights * jacobian).transpose() / Scalar(288);
@@ -127,14 +128,16 @@ struct Prism6 {
     }
 
     /// Every point of the cell is found, and points outside where the cell's map continued reaches them within 32
-    /// thicknesses: p lies in the plane of the triangle at s, a cubic in s. Of several roots the one deepest inside counts.
+    /// thicknesses: p lies in the plane of the triangle at s, a cubic in s. Of several roots the one deepest inside
+    /// counts.
     template <FieldScalar Scalar>
     static NaturalCoordinates<Scalar> natural_coordinates(const Nodes<Scalar>& X, const Vector3<Scalar>& p) {
         using Real = RealOf<Scalar>;
         constexpr Real reach = Real(32);
         const Nodes<Scalar> Y = X.colwise() - p;
         const std::array<Scalar, 4> height = plane_distance(Y);
-        const Cubic<Real> height_value{value_of(height[0]), value_of(height[1]), value_of(height[2]), value_of(height[3])};
+        const Cubic<Real> height_value{value_of(height[0]), value_of(height[1]), value_of(height[2]),
+                                       value_of(height[3])};
         const CubicRoots<Real> roots = cubic_roots(height_value, -reach, Real(1) + reach);
 
         NaturalCoordinates<Scalar> best{Vector3<Scalar>::Zero(), false};
@@ -147,7 +150,8 @@ struct Prism6 {
             const Vector3<Scalar> xi = coordinates_in_plane(Y, s);
             const Real lambda_1 = value_of(xi(0));
             const Real lambda_2 = value_of(xi(1));
-            const Real depth = std::min({lambda_1, lambda_2, Real(1) - lambda_1 - lambda_2, value_of(s), Real(1) - value_of(s)});
+            const Real depth =
+                std::min({lambda_1, lambda_2, Real(1) - lambda_1 - lambda_2, value_of(s), Real(1) - value_of(s)});
             if (depth > best_depth) {  // false for NaN
                 best = {xi, true};
                 best_depth = depth;
@@ -239,13 +243,13 @@ private:
     /// Natural coordinates of the origin, which lies in the plane of the triangle at s.
     template <class Scalar>
     static Vector3<Scalar> coordinates_in_plane(const Nodes<Scalar>& Y, const Scalar& s) {
-        const Matrix3<Scalar> triangle =
-            (Scalar(1) - s) * Y.template leftCols<3>() + s * Y.template rightCols<3>();
+        const Matrix3<Scalar> triangle = (Scalar(1) - s) * Y.template leftCols<3>() + s * Y.template rightCols<3>();
         const Vector3<Scalar> e1 = triangle.col(1) - triangle.col(0);
         const Vector3<Scalar> e2 = triangle.col(2) - triangle.col(0);
         const Vector3<Scalar> n = e1.cross(e2);
         const Vector3<Scalar> scaled = n / n.squaredNorm();
-        return {-triangle.col(0).cross(e2).dot(scaled), -e1.cross(triangle.col(0)).dot(scaled), Scalar(2) * s - Scalar(1)};
+        return {-triangle.col(0).cross(e2).dot(scaled), -e1.cross(triangle.col(0)).dot(scaled),
+                Scalar(2) * s - Scalar(1)};
     }
 };
 

@@ -3,14 +3,15 @@
 /// Conforming split of a prism mesh into tets, three a prism.
 ///
 /// What        the same vertices; tets 3c, 3c+1, 3c+2 are those of prism c
-/// Method      every side is cut by the diagonal that starts at its smallest vertex index, so the prisms on both sides of
-///             it cut it alike; the smallest of a prism's six indices decides two of its three sides, which always
+/// Method      every side is cut by the diagonal that starts at its smallest vertex index, so the prisms on both sides
+///             of it cut it alike; the smallest of a prism's six indices decides two of its three sides, which always
 ///             leaves one of two valid patterns.
 /// Volume      a flat cut replaces each bilinear side, so a prism and its tets differ in volume; what one prism
 ///             loses its neighbour gains, and a mesh without free sides (a closed layer) keeps its volume exactly.
-/// Valid       prisms with positive corner Jacobians give two positive tets for certain, and the third one unless they are
-///             strongly twisted or sheared: validate() of the result says which is not.
-/// Source      Dompierre, Labbe, Vallet, Camarero 1999, "How to subdivide pyramids, prisms and hexahedra into tetrahedra"
+/// Valid       prisms with positive corner Jacobians give two positive tets for certain, and a positive third one unless
+///             they are strongly twisted or sheared: validate() of the result names a tet that is not.
+/// Source      Dompierre, Labbe, Vallet, Camarero 1999, "How to subdivide pyramids, prisms and hexahedra into
+///             tetrahedra"
 /// Tests       tests/unit/mesh/split_prisms_test.cpp
 #pragma once
 
