@@ -38,6 +38,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -149,6 +150,22 @@ VectorX<S> thinned_towards_cuts(const SoftLayer<S>& layer, const VectorX<S>& thi
     return thinned;
 }
 
+/// Throws if `guarded` had to change the thickness, and says where and why.
+template <RealScalar S>
+void refuse_reduction(const SoftLayer<S>& layer, const TriangleMesh& mesh, const LayerColumns<S>& columns,
+                      const VectorX<S>& wanted, const GuardedThickness<S>& guarded) {
+    for (Index t = 0; t < mesh.num_triangles(); ++t) {
+        const S jacobian = relative_jacobian<S>(columns, mesh.triangles().col(t), wanted);
+        require(jacobian >= layer.options.validity_margin, "soft layer: the thickness makes the cells below body triangle ",
+                layer.region.body_triangles[size_t(t)], " invalid (relative Jacobian ", jacobian, ", expected >= ",
+                layer.options.validity_margin, ")");
+    }
+    for (Index v = 0; v < wanted.size(); ++v) {
+        require(guarded.thickness(v) >= wanted(v), "soft layer: with the thickness ", wanted(v), " of body vertex ",
+                layer.region.body_vertices[size_t(v)], " the inner surface crosses itself or the skin");
+    }
+}
+
 /// Fills mesh, prescribed vertices and the thickness part of the report from layer.thickness.
 template <RealScalar S>
 void set_mesh(SoftLayer<S>& layer) {
@@ -203,15 +220,10 @@ SoftLayer<S> with_thickness(SoftLayer<S> layer, const std::type_identity_t<Vecto
     const TriangleMesh mesh(layer.region.triangles, layer.num_columns());
     const LayerColumns<S> columns{layer.skin_positions, layer.directions, layer.layers.num_layers};
     const ThicknessGuard<S> guard(mesh, columns, layer.options.validity_margin);
-    if (policy == ThicknessPolicy::refuse) {
-        for (Index t = 0; t < mesh.num_triangles(); ++t) {
-            require(guard.is_valid(t, wanted), "soft layer: thickness inverts the cells below body triangle ",
-                    layer.region.body_triangles[size_t(t)], " (relative Jacobian ",
-                    relative_jacobian<S>(columns, mesh.triangles().col(t), wanted), ", expected >= ",
-                    layer.options.validity_margin, ")");
-        }
-    }
     const GuardedThickness<S> guarded = guard.reduce(wanted);
+    if (policy == ThicknessPolicy::refuse) {
+        detail::refuse_reduction(layer, mesh, columns, wanted, guarded);
+    }
     layer.thickness = guarded.thickness;
     layer.report.reduction_rounds = guarded.rounds;
     layer.report.vertices_reduced = (guarded.thickness.array() < wanted.array()).count();

@@ -50,7 +50,7 @@ struct SoftLayerOptions {
     S smallest_cosine = S(0.02);
     /// Every Jacobian coefficient of a prism, and every tet of its split, is at least this fraction of its limit for a
     /// vanishing thickness.
-    S validity_margin = S(0.1);
+    S validity_margin = S(0.2);
 };
 
 template <RealScalar S>

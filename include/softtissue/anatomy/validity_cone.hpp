@@ -18,6 +18,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 
 namespace softtissue {
 

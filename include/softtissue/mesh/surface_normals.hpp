@@ -14,8 +14,6 @@
 
 #include <Eigen/Geometry>
 
-#include <type_traits>
-
 namespace softtissue {
 
 /// Normal times area of every triangle, 3 x m [m^2].
@@ -31,11 +29,23 @@ Matrix3X<S> area_vectors(const Matrix3X<S>& positions, const Triangles& triangle
     return areas;
 }
 
+namespace detail {
+
+/// A column of zeros stays zero.
+template <RealScalar S>
+void normalise_columns(Matrix3X<S>& vectors) {
+    for (Index i = 0; i < vectors.cols(); ++i) {
+        vectors.col(i).normalize();
+    }
+}
+
+}  // namespace detail
+
 /// Unit normal of every triangle.
 template <RealScalar S>
 Matrix3X<S> triangle_normals(const Matrix3X<S>& positions, const Triangles& triangles) {
     Matrix3X<S> normals = area_vectors(positions, triangles);
-    normals.colwise().normalize();
+    detail::normalise_columns(normals);
     return normals;
 }
 
@@ -55,7 +65,7 @@ Matrix3X<S> vertex_normals(const Matrix3X<S>& positions, const Triangles& triang
             normals.col(triangles(k, t)) += areas.col(t);
         }
     }
-    normals.colwise().normalize();
+    detail::normalise_columns(normals);
     return normals;
 }
 
