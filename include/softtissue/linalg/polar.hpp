@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// The rotation nearest to a 3x3 matrix, and its derivative.
+///
+/// What        R(F) = U V^T of the signed singular value decomposition: det R = +1 for every F, inverted ones included
+/// Equation    R = argmin |F - R|^2 over rotations;
+///             dR/dF = sum_{i<j} q_ij q_ij^T / (s_i + s_j),  q_ij = vec(u_i v_j^T - u_j v_i^T)
+/// Shapes      F, R: 3x3.  dR/dF: 9x9 on column-major vec(F), symmetric, positive semi-definite, rank 3.
+/// Valid       R: every finite F.  Not unique, and not differentiable, where s_1 + s_2 = 0 (s_2 the signed smallest
+///             singular value: inverted or rank-one F whose two smallest stretches cancel).  There R is one of the
+///             minimisers, and the denominators are kept at or above epsilon, so the derivative stays finite.
+/// Source      derivative: Smith, de Goes, Kim 2019, sec. 4 (twist modes)
+/// Cost        one svd3; the derivative adds three rank-one updates
+/// Tests       tests/unit/linalg/polar_test.cpp
+#pragma once
+
+#include <softtissue/core/notation.hpp>
+#include <softtissue/linalg/svd3.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace softtissue {
+
+/// The proper rotation of a decomposed matrix.
+template <RealScalar Scalar>
+Matrix3<Scalar> polar_rotation(const Svd3<Scalar>& svd) {
+    return svd.U * svd.V.transpose();
+}
+
+/// The rotation nearest to F, det = +1.
+template <RealScalar Scalar>
+Matrix3<Scalar> polar_rotation(const Matrix3<Scalar>& F) {
+    return polar_rotation(svd3(F));
+}
+
+/// s_i + s_j, the stiffness of the rotation against turning in the plane (i, j), kept at or above epsilon.
+template <RealScalar Scalar>
+Scalar twist_denominator(const Vector3<Scalar>& sigma, int i, int j) {
+    return std::max(sigma(i) + sigma(j), std::numeric_limits<Scalar>::epsilon());
+}
+
+/// d vec(R) / d vec(F) of a decomposed matrix.
+template <RealScalar Scalar>
+Matrix9<Scalar> drotation_dgradient(const Svd3<Scalar>& svd) {
+    Matrix9<Scalar> derivative = Matrix9<Scalar>::Zero();
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3;
+        const int j = (k + 2) % 3;
+        const Matrix3<Scalar> Q = svd.U.col(i) * svd.V.col(j).transpose() - svd.U.col(j) * svd.V.col(i).transpose();
+        const Vector9<Scalar> q = vec(Q);
+        derivative.template selfadjointView<Eigen::Lower>().rankUpdate(
+            q, Scalar(1) / twist_denominator(svd.sigma, i, j));
+    }
+    const Matrix9<Scalar> lower = derivative;
+    derivative = lower.template selfadjointView<Eigen::Lower>();
+    return derivative;
+}
+
+/// d vec(R) / d vec(F).
+template <RealScalar Scalar>
+Matrix9<Scalar> drotation_dgradient(const Matrix3<Scalar>& F) {
+    return drotation_dgradient(svd3(F));
+}
+
+}  // namespace softtissue
