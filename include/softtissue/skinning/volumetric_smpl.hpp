@@ -54,13 +54,12 @@ public:
           shape_directions_(body.shape_directions),
           pose_directions_(body.pose_directions) {
         body.validate("VolumetricSmpl");
-        const SparseMatrix regressor = body.joint_regressor;
-        joint_template_ = (regressor * template_.transpose()).transpose();
+        joint_template_ = (body.joint_regressor * template_.transpose()).transpose();
         joint_directions_.resize(3 * num_joints(), num_shapes());
         for (Index s = 0; s < num_shapes(); ++s) {
             const Eigen::Map<const Matrix3X<S>> direction(shape_directions_.col(s).data(), 3, num_vertices());
             Eigen::Map<Matrix3X<S>>(joint_directions_.col(s).data(), 3, num_joints()) =
-                (regressor * direction.transpose()).transpose();
+                (body.joint_regressor * direction.transpose()).transpose();
         }
         set_shape(VectorX<S>::Zero(num_shapes()));
     }

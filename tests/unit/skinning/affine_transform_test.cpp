@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include <softtissue/skinning/affine_transform.hpp>
+
+#include <softtissue/core/dual.hpp>
+#include <softtissue/testing/random_states.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+using namespace softtissue;
+
+TEST_CASE_TEMPLATE("default is the identity; application and composition", S, float, double) {
+    const AffineTransform<S> identity;
+    const Vector3<S> x(1, 2, 3);
+    CHECK(identity(x) == x);
+    AffineTransform<S> outer, inner;
+    outer.linear << 0, -1, 0, 1, 0, 0, 0, 0, 2;
+    outer.translation << 1, 0, 0;
+    inner.linear = S(3) * Matrix3<S>::Identity();
+    inner.translation << 0, 0, 1;
+    CHECK(inner(x) == Vector3<S>(3, 6, 10));
+    CHECK(outer(inner(x)) == Vector3<S>(-5, 3, 20));
+    CHECK((outer * inner)(x) == Vector3<S>(-5, 3, 20));
+}
+
+TEST_CASE_TEMPLATE("the inverse takes points back, also through a mirror", S, float, double) {
+    RandomGenerator random(1);
+    for (int i = 0; i < 100; ++i) {
+        const StateClass kind = i % 2 == 0 ? StateClass::general : StateClass::inverted;
+        const AffineTransform<S> T{random_state<S>(kind, random), random_normal<Vector3<S>>(random)};
+        const Vector3<S> x = random_normal<Vector3<S>>(random);
+        // singular values from 0.1 to 1.6: condition below 16, |T x| below 10
+        CHECK((T.inverse()(T(x)) - x).norm() <= S(1000) * std::numeric_limits<S>::epsilon());
+    }
+}
+
+TEST_CASE_TEMPLATE("cofactors are the derivative of the determinant, also of a singular matrix", S, float, double) {
+    using D = Dual<S, 9>;
+    Matrix3<S> A;
+    A << 1, 2, 3, 2, 4, 6, 1, 0, 5;  // rank 2
+    Matrix3<D> seeded;
+    for (int i = 0; i < 9; ++i) {
+        seeded(i) = D::variable(A(i), i);
+    }
+    const D det = seeded(0, 0) * (seeded(1, 1) * seeded(2, 2) - seeded(1, 2) * seeded(2, 1)) -
+                  seeded(0, 1) * (seeded(1, 0) * seeded(2, 2) - seeded(1, 2) * seeded(2, 0)) +
+                  seeded(0, 2) * (seeded(1, 0) * seeded(2, 1) - seeded(1, 1) * seeded(2, 0));
+    const Matrix3<S> C = cofactors(A);
+    for (int i = 0; i < 9; ++i) {
+        CHECK(C(i) == det.derivative[size_t(i)]);
+    }
+    CHECK(A.col(0).dot(C.col(0)) == S(0));
+}
