@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// What the tests of files share: a folder that vanishes, whole files as bytes, the text of a refusal, .npy images built
+/// independently of the library.
+#pragma once
+
+#include <softtissue/core/error.hpp>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace io_test {
+
+/// A new folder, removed with its content at the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        int attempt = 0;
+        do {
+            path_ = std::filesystem::temp_directory_path() / ("softtissue_io_test_" + std::to_string(attempt++));
+        } while (!std::filesystem::create_directory(path_));
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+
+    std::size_t num_files() const {
+        return std::size_t(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline std::string read_bytes(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// The text of the InvalidInput that `action` throws; empty if it throws none.
+template <class Action>
+std::string refusal(const Action& action) {
+    try {
+        action();
+    } catch (const softtissue::InvalidInput& error) {
+        return error.what();
+    }
+    return {};
+}
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A .npy file of format version 1 with this dictionary text and these data bytes.
+inline std::string npy_image(const std::string& dictionary, const std::string& data) {
+    std::string image("\x93NUMPY\x01\x00", 8);
+    const std::string header = dictionary + "\n";
+    image += char(header.size() % 256);
+    image += char(header.size() / 256);
+    return image + header + data;
+}
+
+inline std::vector<unsigned char> as_bytes(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// The memory of `values`, element by element.
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+    std::string bytes(values.size() * sizeof(T), '\0');
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+    return bytes;
+}
+
+}  // namespace io_test
