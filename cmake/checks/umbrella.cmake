@@ -1,0 +1,28 @@
+# Checks that the umbrella includes exactly the headers below floor 7 that need Eigen only, in alphabetical order.
+#   cmake -D INCLUDE_DIR=<include> -P umbrella.cmake
+cmake_minimum_required(VERSION 3.24)
+include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
+
+softtissue_list_headers(headers "${INCLUDE_DIR}")
+softtissue_split_headers(headers expected optional "${INCLUDE_DIR}")
+list(FILTER expected EXCLUDE REGEX "^softtissue/(softtissue\\.hpp|(io|model|testing)/)")
+
+softtissue_included_headers(actual "${INCLUDE_DIR}/softtissue/softtissue.hpp")
+if(NOT actual STREQUAL expected)
+    set(missing ${expected})
+    set(surplus ${actual})
+    list(REMOVE_ITEM missing ${actual} "")
+    list(REMOVE_ITEM surplus ${expected} "")
+    foreach(header IN LISTS missing)
+        message(NOTICE "softtissue.hpp lacks ${header}")
+    endforeach()
+    foreach(header IN LISTS surplus)
+        message(NOTICE "softtissue.hpp should not include ${header}")
+    endforeach()
+    list(TRANSFORM expected REPLACE "(.+)" "#include <\\1>")
+    list(JOIN expected "\n" expected)
+    message(NOTICE "expected:\n${expected}")
+    message(FATAL_ERROR "the umbrella must list every header below floor 7 that needs Eigen only, sorted")
+endif()
+list(LENGTH actual count)
+message(STATUS "the umbrella includes all ${count} headers that need Eigen only")

@@ -1,0 +1,27 @@
+# Shared by the consumer projects, once softtissue::softtissue exists.
+
+# Nothing but include path, Eigen and C++20 reaches a consumer.
+foreach(target IN ITEMS softtissue::softtissue softtissue::io softtissue::cholmod)
+    if(TARGET ${target})
+        foreach(property IN ITEMS COMPILE_OPTIONS COMPILE_DEFINITIONS LINK_OPTIONS)
+            get_target_property(value ${target} INTERFACE_${property})
+            if(value)
+                message(FATAL_ERROR "${target} exports ${property}: ${value}")
+            endif()
+        endforeach()
+    endif()
+endforeach()
+get_target_property(libraries softtissue::softtissue INTERFACE_LINK_LIBRARIES)
+if(NOT libraries STREQUAL "Eigen3::Eigen")
+    message(FATAL_ERROR "softtissue::softtissue links ${libraries}, expected Eigen3::Eigen alone")
+endif()
+
+enable_testing()
+add_executable(consumer "${CMAKE_CURRENT_LIST_DIR}/main.cpp")
+target_link_libraries(consumer PRIVATE softtissue::softtissue)
+add_test(NAME consumer COMMAND consumer)
+if(TARGET softtissue::io AND TARGET softtissue::cholmod)
+    add_executable(components "${CMAKE_CURRENT_LIST_DIR}/components.cpp")
+    target_link_libraries(components PRIVATE softtissue::io softtissue::cholmod)
+    add_test(NAME components COMMAND components)
+endif()
