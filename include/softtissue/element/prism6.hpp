@@ -72,26 +72,49 @@ struct Prism6 {
     static Nodes<Scalar> gradient_operator(const Nodes<Scalar>& X) {
         const Vector3<Scalar> middle = X.rowwise().sum() / Scalar(6);
         const Matrix3<Scalar> dual = dual_basis(mean_frame(X));
-        Nodes<Scalar> Y = dual.transpose() * (X.colwise() - middle);
-        const Eigen::Matrix<Scalar, 6, 6> mass = shape_products(Y);
-        const Values<Scalar> integrals = mass.rowwise().sum();
-        const Vector3<Scalar> centroid = Y * integrals / integrals.sum();
-        Y.colwise() -= centroid;
-        const Nodes<Scalar> first_moments = Y * mass;
-        const Matrix3<Scalar> M = first_moments * Y.transpose();
-        return dual * (dual_basis(M) * first_moments);
+        Nodes<Scalar> Y;  // in the frame of the mean prism
+        for (int i = 0; i < num_nodes; ++i) {
+            const Vector3<Scalar> local = X.col(i) - middle;
+            Y.col(i) = dual.transpose() * local;
+        }
+        const Values<Scalar> integrals = shape_integrals(Y);
+        Vector3<Scalar> centroid = Vector3<Scalar>::Zero();
+        for (int i = 0; i < num_nodes; ++i) {
+            centroid += integrals(i) * Y.col(i);
+        }
+        centroid /= integrals.sum();
+        for (int i = 0; i < num_nodes; ++i) {
+            Y.col(i) -= centroid;
+        }
+        const Nodes<Scalar> moments = first_moments(Y);
+        Matrix3<Scalar> M = Matrix3<Scalar>::Zero();
+        for (int i = 0; i < num_nodes; ++i) {
+            for (int a = 0; a < 3; ++a) {
+                M.col(a) += Y(a, i) * moments.col(i);
+            }
+        }
+        const Matrix3<Scalar> to_world = dual * dual_basis(M);
+        return to_world * moments;
     }
 
     template <class Scalar>
     static Values<Scalar> shape_integrals(const Nodes<Scalar>& X) {
         const Matrix3<Scalar> jacobian = bernstein_jacobians(X);
         // int B_k (1 - s) ds = (3, 2, 1) / 12, reversed for s; int lambda_i lambda_l dlambda = (1 + delta_il) / 24.
-        Eigen::Matrix<Scalar, 2, 3> weights;
-        weights << Scalar(3), Scalar(2), Scalar(1), Scalar(1), Scalar(2), Scalar(3);
-        const Eigen::Matrix<Scalar, 3, 2> q = (weights * jacobian).transpose() / Scalar(288);
+        Vector3<Scalar> bottom;
+        Vector3<Scalar> top;
+        for (int i = 0; i < 3; ++i) {
+            const Scalar middle = Scalar(2) * jacobian(1, i);
+            bottom(i) = (Scalar(3) * jacobian(0, i) + middle + jacobian(2, i)) / Scalar(288);
+            top(i) = (jacobian(0, i) + middle + Scalar(3) * jacobian(2, i)) / Scalar(288);
+        }
+        const Scalar bottom_sum = bottom(0) + bottom(1) + bottom(2);
+        const Scalar top_sum = top(0) + top(1) + top(2);
         Values<Scalar> integrals;
-        integrals.template head<3>() = q.col(0).array() + q.col(0).sum();
-        integrals.template tail<3>() = q.col(1).array() + q.col(1).sum();
+        for (int i = 0; i < 3; ++i) {
+            integrals(i) = bottom_sum + bottom(i);
+            integrals(i + 3) = top_sum + top(i);
+        }
         return integrals;
     }
 
@@ -204,26 +227,33 @@ private:
         return frame;
     }
 
-    /// int N_i N_j dX: int B_k s^p (1-s)^(2-p) ds = (12, 6, 2 | 3, 4, 3 | 2, 6, 12) / 60 for p = 0, 1, 2, and
+    /// int N_i Y dY: int B_k s^p (1-s)^(2-p) ds = (12, 6, 2 | 3, 4, 3 | 2, 6, 12) / 60 for p = 0, 1, 2, and
     /// int lambda_i lambda_j lambda_l dlambda = (1 + delta_ij)(1 + delta_il + delta_jl) / 120.
     template <class Scalar>
-    static Eigen::Matrix<Scalar, 6, 6> shape_products(const Nodes<Scalar>& X) {
-        Matrix3<Scalar> weights;
-        weights << Scalar(12), Scalar(6), Scalar(2), Scalar(3), Scalar(4), Scalar(3), Scalar(2), Scalar(6), Scalar(12);
-        const Matrix3<Scalar> q = (weights * bernstein_jacobians(X)) / Scalar(7200);
-        Eigen::Matrix<Scalar, 6, 6> mass;
+    static Nodes<Scalar> first_moments(const Nodes<Scalar>& Y) {
+        const Matrix3<Scalar> jacobian = bernstein_jacobians(Y);
+        constexpr std::array<std::array<int, 3>, 3> weights{{{12, 6, 2}, {3, 4, 3}, {2, 6, 12}}};
+        Nodes<Scalar> moments = Nodes<Scalar>::Zero();
         for (int p = 0; p < 3; ++p) {
-            Matrix3<Scalar> block;
+            const std::array<int, 3>& w = weights[std::size_t(p)];
+            Vector3<Scalar> q;
+            for (int i = 0; i < 3; ++i) {
+                q(i) = (Scalar(w[0]) * jacobian(0, i) + Scalar(w[1]) * jacobian(1, i) + Scalar(w[2]) * jacobian(2, i)) /
+                       Scalar(7200);
+            }
+            const Scalar sum = q(0) + q(1) + q(2);
             for (int i = 0; i < 3; ++i) {
                 for (int j = 0; j < 3; ++j) {
-                    const Scalar entry = q.row(p).sum() + q(p, i) + q(p, j);
-                    block(i, j) = i == j ? entry + entry : entry;
+                    const Scalar product = (sum + q(i) + q(j)) * Scalar(i == j ? 2 : 1);
+                    // p = 0: both nodes below, 2: both above, 1: one of each.
+                    moments.col(i + 3 * (p / 2)) += product * Y.col(j + 3 * ((p + 1) / 2));
+                    if (p == 1) {
+                        moments.col(i + 3) += product * Y.col(j);
+                    }
                 }
             }
-            mass.template block<3, 3>(3 * (p / 2), 3 * ((p + 1) / 2)) = block;
         }
-        mass.template bottomLeftCorner<3, 3>() = mass.template topRightCorner<3, 3>();
-        return mass;
+        return moments;
     }
 
     /// n(s) . Y_0(s) in ascending powers of s: zero where the plane of the triangle at s holds the origin.
