@@ -49,8 +49,7 @@ AmassClip<S> read_amass_clip(const std::filesystem::path& path, Index num_joints
     poses.for_each<S>([&](Index i, S value) {
         clip.motion.poses[std::size_t(i / columns)].rotation_vectors.data()[i % columns] = value;
     });
-    trans.for_each<S>(
-        [&](Index i, S value) { clip.motion.poses[std::size_t(i / 3)].translation(i % 3) = value; });
+    trans.for_each<S>([&](Index i, S value) { clip.motion.poses[std::size_t(i / 3)].translation(i % 3) = value; });
     clip.motion.frame_rate =
         file.at(file.contains("mocap_frame_rate") ? "mocap_frame_rate" : "mocap_framerate").scalar<S>();
     if (file.contains("gender")) {

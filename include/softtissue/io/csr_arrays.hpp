@@ -98,8 +98,8 @@ public:
 
 private:
     static const NpyArray& part(const NpzFile& file, const std::string& name, const char* suffix) {
-        require(file.contains(name + suffix), file.path(), ": array '", name, "' is missing, neither dense nor as ", name,
-                "_{data,indices,indptr,shape}");
+        require(file.contains(name + suffix), file.path(), ": array '", name, "' is missing, neither dense nor as ",
+                name, "_{data,indices,indptr,shape}");
         const NpyArray& array = file.at(name + suffix);
         array.require_shape({NpyArray::any});
         return array;

@@ -44,17 +44,17 @@ namespace softtissue {
 struct GltfMesh {
     std::string name;
     Triangles triangles;
-    Vector3<double> translation = Vector3<double>::Zero();       ///< moves the whole mesh [m]
+    Vector3<double> translation = Vector3<double>::Zero();        ///< moves the whole mesh [m]
     Vector3<double> base_color = Vector3<double>::Constant(0.8);  ///< multiplies the vertex colours
-    Matrix3X<float> colors = {};                                 ///< one per vertex, or empty
-    bool smooth_shading = true;                                  ///< store vertex normals for every frame
+    Matrix3X<float> colors = {};                                  ///< one per vertex, or empty
+    bool smooth_shading = true;                                   ///< store vertex normals for every frame
 };
 
 class GltfAnimation {
 public:
     explicit GltfAnimation(double frame_rate) : frame_rate_(frame_rate) {
-        require(frame_rate > 0.0 && frame_rate <= std::numeric_limits<double>::max(), "gltf: frame rate is ", frame_rate,
-                ", expected > 0");
+        require(frame_rate > 0.0 && frame_rate <= std::numeric_limits<double>::max(), "gltf: frame rate is ",
+                frame_rate, ", expected > 0");
         model_.asset.version = "2.0";
         model_.asset.generator = "softtissue";
         model_.buffers.resize(1);
@@ -67,7 +67,8 @@ public:
         require(mesh.triangles.cols() > 0, "gltf: mesh '", mesh.name, "' has no triangles");
         const auto number = static_cast<int>(meshes_.size());
         tinygltf::Material material;
-        material.pbrMetallicRoughness.baseColorFactor = {mesh.base_color.x(), mesh.base_color.y(), mesh.base_color.z(), 1.0};
+        material.pbrMetallicRoughness.baseColorFactor = {mesh.base_color.x(), mesh.base_color.y(), mesh.base_color.z(),
+                                                         1.0};
         material.pbrMetallicRoughness.metallicFactor = 0.0;
         material.pbrMetallicRoughness.roughnessFactor = 0.7;
         model_.materials.push_back(std::move(material));
@@ -152,8 +153,8 @@ private:
                 mesh.colors.cols(), " colours, expected ", n);
         for (Index v = 0; v < mesh.colors.cols(); ++v) {
             const Vector3<float> color = mesh.colors.col(v);
-            require((color.array() >= 0.0F && color.array() <= 1.0F).all(), "gltf: mesh '", mesh.name, "': colour of vertex ",
-                    v, " is ", color.transpose(), ", expected three values from 0 to 1");
+            require((color.array() >= 0.0F && color.array() <= 1.0F).all(), "gltf: mesh '", mesh.name,
+                    "': colour of vertex ", v, " is ", color.transpose(), ", expected three values from 0 to 1");
         }
         state.first_positions = positions;
         primitive.attributes["POSITION"] = append_vectors(positions);

@@ -43,9 +43,10 @@ public:
     template <class T>
         requires std::is_arithmetic_v<T>
     static NpyArray from_values(std::span<const T> values, std::vector<Index> shape) {
-        constexpr char kind = std::is_same_v<T, bool> ? 'b' : std::is_floating_point_v<T> ? 'f'
-                                                          : std::is_signed_v<T>           ? 'i'
-                                                                                          : 'u';
+        constexpr char kind = std::is_same_v<T, bool>       ? 'b'
+                              : std::is_floating_point_v<T> ? 'f'
+                              : std::is_signed_v<T>         ? 'i'
+                                                            : 'u';
         return from_elements({kind, sizeof(T), false}, std::move(shape), values.data(), values.size());
     }
 
@@ -100,8 +101,7 @@ public:
     /// Calls f(i, value) for each element i in C order, converted to T.
     template <class T, class Function>
     void for_each(const Function& f) const {
-        require(header_.unsupported.empty(), source_, ": ", header_.unsupported,
-                "; expected numbers of 1 to 8 bytes");
+        require(header_.unsupported.empty(), source_, ": ", header_.unsupported, "; expected numbers of 1 to 8 bytes");
         switch (header_.type.kind) {
             case 'f':
                 return header_.type.size == 4 ? for_each_of<float, T>(f) : for_each_of<double, T>(f);
@@ -168,9 +168,8 @@ public:
     std::vector<Eigen::Matrix<S, rows, cols>> matrices() const {
         require_shape({any, rows, cols});
         std::vector<Eigen::Matrix<S, rows, cols>> result(size() / std::size_t(rows * cols));
-        for_each<S>([&](Index i, S value) {
-            result[std::size_t(i / (rows * cols))](i / cols % rows, i % cols) = value;
-        });
+        for_each<S>(
+            [&](Index i, S value) { result[std::size_t(i / (rows * cols))](i / cols % rows, i % cols) = value; });
         return result;
     }
 

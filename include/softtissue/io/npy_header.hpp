@@ -157,7 +157,8 @@ private:
             header.unsupported = "it holds pickled Python objects, which are programs rather than data";
             return;
         }
-        if (descr.size() < 3 || descr.size() > 12 || std::string_view("<>|=").find(descr[0]) == std::string_view::npos) {
+        if (descr.size() < 3 || descr.size() > 12 ||
+            std::string_view("<>|=").find(descr[0]) == std::string_view::npos) {
             return;
         }
         std::size_t size = 0;
@@ -243,9 +244,9 @@ inline NpyHeader parse_npy_header(const std::string& source, std::span<const uns
 /// The header of a .npy file in this machine's byte order; type, order and shape are taken from `header`.
 inline std::string make_npy_header(const NpyHeader& header) {
     const NpyType& type = header.type;
-    const char order = type.size == 1 || type.kind == 'S'                   ? '|'
+    const char order = type.size == 1 || type.kind == 'S'           ? '|'
                        : std::endian::native == std::endian::little ? '<'
-                                                                            : '>';
+                                                                    : '>';
     std::string shape;
     for (const Index extent : header.shape) {
         shape += std::to_string(extent) + (header.shape.size() == 1 ? "," : ", ");
@@ -253,10 +254,9 @@ inline std::string make_npy_header(const NpyHeader& header) {
     if (header.shape.size() > 1) {
         shape.resize(shape.size() - 2);
     }
-    std::string dictionary = std::string("{'descr': '") + order + type.kind +
-                             std::to_string(type.kind == 'U' ? type.size / 4 : type.size) +
-                             "', 'fortran_order': " + (header.fortran_order ? "True" : "False") + ", 'shape': (" +
-                             shape + "), }";
+    std::string dictionary =
+        std::string("{'descr': '") + order + type.kind + std::to_string(type.kind == 'U' ? type.size / 4 : type.size) +
+        "', 'fortran_order': " + (header.fortran_order ? "True" : "False") + ", 'shape': (" + shape + "), }";
     constexpr std::size_t alignment = 64;
     constexpr std::size_t preamble = 10;
     const std::size_t unpadded = preamble + dictionary.size() + 1;

@@ -91,8 +91,8 @@ inline std::vector<unsigned char> read_zip_member(zip_t* archive, zip_uint64_t i
                                                   std::uintmax_t file_size) {
     zip_stat_t stat;
     zip_stat_init(&stat);
-    const bool has_sizes = zip_stat_index(archive, index, 0, &stat) == 0 &&
-                           (stat.valid & ZIP_STAT_SIZE) != 0 && (stat.valid & ZIP_STAT_COMP_SIZE) != 0;
+    const bool has_sizes = zip_stat_index(archive, index, 0, &stat) == 0 && (stat.valid & ZIP_STAT_SIZE) != 0 &&
+                           (stat.valid & ZIP_STAT_COMP_SIZE) != 0;
     require(has_sizes, source, ": its directory entry is damaged: ", zip_strerror(archive));
     constexpr zip_uint64_t largest_deflate_ratio = 1032;  // 258 bytes from 2 bits
     require(stat.comp_size <= file_size && stat.size / largest_deflate_ratio <= stat.comp_size, source, ": claims ",
@@ -150,8 +150,7 @@ inline void write_npz(const std::filesystem::path& path, const NpyArrays& arrays
     const std::string file = path.string();
     require(!arrays.empty(), file, ": no arrays to write");
     AtomicFile output(path);
-    detail::ZipArchive archive =
-        detail::open_zip(output.temporary_path().string(), file, ZIP_CREATE | ZIP_TRUNCATE);
+    detail::ZipArchive archive = detail::open_zip(output.temporary_path().string(), file, ZIP_CREATE | ZIP_TRUNCATE);
     for (const auto& [name, array] : arrays) {
         const std::span<const unsigned char> bytes = array.file_bytes();
         zip_source_t* const source = zip_source_buffer(archive.get(), bytes.data(), bytes.size(), 0);

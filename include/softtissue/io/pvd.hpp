@@ -29,7 +29,8 @@ inline void write_pvd(const std::filesystem::path& path, const std::vector<PvdSt
     xml.precision(17);
     xml << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
     for (const PvdStep& step : steps) {
-        xml << "<DataSet timestep=\"" << step.time << "\" part=\"0\" file=\"" << detail::xml_escaped(step.file) << "\"/>\n";
+        xml << "<DataSet timestep=\"" << step.time << "\" part=\"0\" file=\"" << detail::xml_escaped(step.file)
+            << "\"/>\n";
     }
     xml << "</Collection>\n</VTKFile>\n";
     AtomicFile file(path);

@@ -11,7 +11,7 @@
 ///             4294967295, -1 or the root itself. Joint j is column j.
 /// Units       metres; see SmplBody.
 /// Refuses     missing arrays, shapes that do not fit, values that are not finite, weights that do not sum to one, a
-///             kinematic tree that is none, a surface that is not closed and manifold (InvalidInput names the file).
+///             kinematic tree that is none or does not start in joint 0, a surface that is not closed and manifold (InvalidInput names the file).
 /// Source      Loper et al. 2015 (SMPL)
 /// Tests       tests/unit/io/smpl_file_test.cpp
 #pragma once
@@ -126,8 +126,7 @@ SmplBody<S> read_smpl_body(const std::filesystem::path& path) {
 
     const NpyArray& weights = file.at("weights");
     weights.require_shape({n, joints});
-    body.weights =
-        detail::made_from_file(file.path(), [&] { return SkinningWeights<S>(weights.matrix<S>()); });
+    body.weights = detail::made_from_file(file.path(), [&] { return SkinningWeights<S>(weights.matrix<S>()); });
     body.joint_regressor = detail::read_joint_regressor<S>(file, joints, n);
 
     const NpyArray& shapes = file.at("shapedirs");

@@ -44,11 +44,20 @@ inline std::string xml_escaped(const std::string& text) {
     std::string result;
     for (const char c : text) {
         switch (c) {
-            case '&': result += "&amp;"; break;
-            case '<': result += "&lt;"; break;
-            case '>': result += "&gt;"; break;
-            case '"': result += "&quot;"; break;
-            default: result += c;
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += c;
         }
     }
     return result;
@@ -60,7 +69,8 @@ public:
     std::string xml;
     std::string blocks;
 
-    void append_array(const char* type, const std::string& name, Index components, const void* data, std::size_t bytes) {
+    void append_array(const char* type, const std::string& name, Index components, const void* data,
+                      std::size_t bytes) {
         xml += std::string("<DataArray type=\"") + type + "\" Name=\"" + xml_escaped(name) +
                "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
                std::to_string(blocks.size()) + "\"/>\n";
@@ -70,15 +80,17 @@ public:
     }
 
     template <class T, int rows>
-    void append_matrix(const char* type, const std::string& name, const Eigen::Matrix<T, rows, Eigen::Dynamic>& values) {
+    void append_matrix(const char* type, const std::string& name,
+                       const Eigen::Matrix<T, rows, Eigen::Dynamic>& values) {
         append_array(type, name, values.rows(), values.data(), std::size_t(values.size()) * sizeof(T));
     }
 
     void append_fields(const std::string& file, const char* section, const std::vector<VtuArray>& arrays, Index count) {
         xml += std::string("<") + section + ">\n";
         for (const VtuArray& array : arrays) {
-            require(array.values.cols() == count && array.values.rows() > 0, file, ": ", section, " array '", array.name,
-                    "' is ", array.values.rows(), " x ", array.values.cols(), ", expected ", count, " columns");
+            require(array.values.cols() == count && array.values.rows() > 0, file, ": ", section, " array '",
+                    array.name, "' is ", array.values.rows(), " x ", array.values.cols(), ", expected ", count,
+                    " columns");
             append_matrix<float, Eigen::Dynamic>("Float32", array.name, array.values);
         }
         xml += std::string("</") + section + ">\n";
@@ -97,8 +109,8 @@ void write_vtu(const std::filesystem::path& path, const Eigen::MatrixBase<Derive
     const Index n = positions.cols();
     const Index m = cells.cols();
     for (Index c = 0; c < m; ++c) {
-        require(cells.col(c).minCoeff() >= 0 && cells.col(c).maxCoeff() < n, file, ": cell ", c,
-                " has vertices from ", cells.col(c).minCoeff(), " to ", cells.col(c).maxCoeff(), ", expected 0 to ", n - 1);
+        require(cells.col(c).minCoeff() >= 0 && cells.col(c).maxCoeff() < n, file, ": cell ", c, " has vertices from ",
+                cells.col(c).minCoeff(), " to ", cells.col(c).maxCoeff(), ", expected 0 to ", n - 1);
     }
     Connectivity<num_nodes> nodes = cells;
     if constexpr (num_nodes == 6) {
@@ -114,10 +126,11 @@ void write_vtu(const std::filesystem::path& path, const Eigen::MatrixBase<Derive
 
     detail::VtuContent content;
     constexpr bool is_little = std::endian::native == std::endian::little;
-    content.xml = std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
-                  (is_little ? "LittleEndian" : "BigEndian") +
-                  "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(n) +
-                  "\" NumberOfCells=\"" + std::to_string(m) + "\">\n";
+    content.xml =
+        std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
+        (is_little ? "LittleEndian" : "BigEndian") +
+        "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(n) +
+        "\" NumberOfCells=\"" + std::to_string(m) + "\">\n";
     content.append_fields(file, "PointData", fields.vertex_arrays, n);
     content.append_fields(file, "CellData", fields.cell_arrays, m);
     content.xml += "<Points>\n";

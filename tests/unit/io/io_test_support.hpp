@@ -35,7 +35,8 @@ public:
     const std::filesystem::path& path() const { return path_; }
 
     std::size_t num_files() const {
-        return std::size_t(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+        return std::size_t(
+            std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
     }
 
 private:
@@ -62,7 +63,9 @@ std::string refusal(const Action& action) {
     return {};
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// A .npy file of format version 1 with this dictionary text and these data bytes.
 inline std::string npy_image(const std::string& dictionary, const std::string& data) {
@@ -73,7 +76,9 @@ inline std::string npy_image(const std::string& dictionary, const std::string& d
     return image + header + data;
 }
 
-inline std::vector<unsigned char> as_bytes(const std::string& text) { return {text.begin(), text.end()}; }
+inline std::vector<unsigned char> as_bytes(const std::string& text) {
+    return {text.begin(), text.end()};
+}
 
 /// The memory of `values`, element by element.
 template <class T>

@@ -30,8 +30,8 @@ NpyArray vector_array(const std::vector<T>& values) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("every number type survives", T, float, double, std::int8_t, std::int16_t, std::int32_t, std::int64_t,
-                   std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t) {
+TEST_CASE_TEMPLATE("every number type survives", T, float, double, std::int8_t, std::int16_t, std::int32_t,
+                   std::int64_t, std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t) {
     const std::vector<T> values{std::numeric_limits<T>::lowest(), T(0), T(1), std::numeric_limits<T>::max()};
     const NpyArray stored = vector_array(values);
     CHECK(stored.shape() == std::vector<Index>{4});
@@ -105,7 +105,8 @@ TEST_CASE("integers are never bent") {
     CHECK(contains(refused(std::vector<double>{-INFINITY}, std::int64_t()), "expected a whole number"));
     CHECK(contains(refused(std::vector<double>{9223372036854775808.0}, std::int64_t()), "expected a whole number"));
     CHECK(contains(refused(std::vector<float>{2147483648.0F}, std::int32_t()), "expected a whole number"));
-    CHECK(contains(refused(std::vector<int>{-1}, std::uint8_t()), "element 0 is -1, expected a whole number from 0 to 255"));
+    CHECK(contains(refused(std::vector<int>{-1}, std::uint8_t()),
+                   "element 0 is -1, expected a whole number from 0 to 255"));
     CHECK(contains(refused(std::vector<double>{-1.0}, std::uint64_t()), "expected a whole number"));
     CHECK(vector_array(std::vector<double>{-9223372036854775808.0}).as<std::int64_t>()[0] ==
           std::numeric_limits<std::int64_t>::min());
@@ -137,9 +138,10 @@ TEST_CASE("text is read as text, and only as text") {
 
 TEST_CASE("pickled objects are refused with a sentence") {
     const NpyArray pickled = array("|O", false, "()", "\x80\x04K\x01.");
-    CHECK(refusal([&] { static_cast<void>(pickled.as<double>()); }) ==
-          "a.npz: array 'x': it holds pickled Python objects, which are programs rather than data; expected numbers of 1 "
-          "to 8 bytes");
+    CHECK(
+        refusal([&] { static_cast<void>(pickled.as<double>()); }) ==
+        "a.npz: array 'x': it holds pickled Python objects, which are programs rather than data; expected numbers of 1 "
+        "to 8 bytes");
     CHECK(contains(refusal([&] { static_cast<void>(array("<f2", false, "()", "ab").as<float>()); }),
                    "its element type is '<f2'"));
 }

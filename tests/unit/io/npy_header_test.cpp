@@ -13,7 +13,9 @@ using namespace io_test;
 
 namespace {
 
-NpyHeader parse(const std::string& image) { return parse_npy_header("a.npz: array 'x'", as_bytes(image)); }
+NpyHeader parse(const std::string& image) {
+    return parse_npy_header("a.npz: array 'x'", as_bytes(image));
+}
 
 std::string refused(const std::string& image) {
     return refusal([&] { static_cast<void>(parse(image)); });
@@ -88,9 +90,12 @@ TEST_CASE("malformed dictionaries are refused") {
     const std::string data(48, '\0');
     for (const char* text :
          {"", "{", "{}", "'descr'", "{'descr': '<f8', 'fortran_order': False}", "{'descr': '<f8', 'shape': (6,)}",
-          "{'descr': '<f8', 'fortran_order': Maybe, 'shape': (6,)}", "{'descr': '<f8', 'fortran_order': False, 'shape': 6}",
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (-6,)}", "{'descr': '<f8', 'fortran_order': False, 'shape': (6",
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (6,)} x", "{'descr': '<f8, 'fortran_order': False, 'shape': (6,)}",
+          "{'descr': '<f8', 'fortran_order': Maybe, 'shape': (6,)}",
+          "{'descr': '<f8', 'fortran_order': False, 'shape': 6}",
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (-6,)}",
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (6",
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (6,)} x",
+          "{'descr': '<f8, 'fortran_order': False, 'shape': (6,)}",
           "{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (6,)}",
           "{'descr': '<f8', 'fortran_order': False, 'shape': (6,), 'more': 1}", "{'descr': [[[", "{'descr': 8}",
           "{'descr': '<f8' 'fortran_order': False, 'shape': (6,)}"}) {
