@@ -19,7 +19,7 @@ say() {
 
 [ "$#" -eq 1 ] || usage
 task=$1
-packages="g++ cmake ninja-build pkg-config libeigen3-dev libzip-dev libtinygltf-dev libtinyobjloader-dev
+packages="g++ cmake ninja-build pkg-config libeigen3-dev libzip-dev libtinygltf-dev
     nlohmann-json3-dev libcli11-dev libcairo2-dev libsuitesparse-dev"
 case "$task" in
 demo) ;;

@@ -1,14 +1,13 @@
 # The optional components. The same file serves the source tree and the installed package: a component of a
 # header-only library is only a list of libraries to link, so it is made where it is used.
 #
-#   io        softtissue::io        npz, glTF, OBJ and JSON files
+#   io        softtissue::io        npz and glTF files, with JSON for reports
 #   cholmod   softtissue::cholmod   SuiteSparse's sparse Cholesky factorisation
 
 # Per library: name, header, where to look for it, library to link (or -), Debian package.
 set(softtissue_io_LIBRARIES
     "libzip|zip.h||zip|libzip-dev"
     "tinygltf|tiny_gltf.h||tinygltf|libtinygltf-dev"
-    "tinyobjloader|tiny_obj_loader.h||tinyobjloader|libtinyobjloader-dev"
     "nlohmann_json|nlohmann/json.hpp||-|nlohmann-json3-dev")
 set(softtissue_cholmod_LIBRARIES
     "cholmod|cholmod.h|suitesparse|cholmod|libsuitesparse-dev")
