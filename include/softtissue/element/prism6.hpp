@@ -19,7 +19,7 @@
 ///             ones.
 /// Source      Nolte et al. 2026, eq. (1)-(3), with the fit integrated over the cell
 /// Cost        gradient operator about 900 flop, no branch, no loop over quadrature points
-/// Tests       tests/unit/element/prism6_test.cpp, tests/laws/element_laws_test.cpp
+/// Tests       tests/unit/element/prism6_test.cpp, tests/laws/element_laws_prism6_test.cpp
 #pragma once
 
 #include <softtissue/element/concepts.hpp>

@@ -7,7 +7,7 @@
 /// Shapes      X 3x4 [m]; natural coordinates xi = barycentric coordinates of nodes 1, 2, 3
 /// Node order  positive: seen from node 3, nodes 0, 1, 2 run counter-clockwise
 /// Valid       every X with V != 0; a flat cell gives infinities or NaN (CellMesh::validate refuses it)
-/// Tests       tests/unit/element/tet4_test.cpp, tests/laws/element_laws_test.cpp
+/// Tests       tests/unit/element/tet4_test.cpp, tests/laws/element_laws_tet4_test.cpp
 #pragma once
 
 #include <softtissue/element/concepts.hpp>

@@ -5,8 +5,8 @@
 /// What        every root in [low, high] where c_0 + c_1 s + c_2 s^2 + c_3 s^3 changes sign, ascending
 /// Method      the extrema (roots of the derivative) cut the interval into monotone pieces; in a piece whose ends differ
 ///             in sign, Newton steps that leave the bracket are replaced by bisection.
-/// Valid       any finite coefficients, leading zeros included. A root where the cubic only touches zero is not
-///             reported.
+/// Valid       any finite coefficients, leading zeros included. Where the cubic only touches zero, round-off decides
+///             between no root and two.
 /// Cost        at most three brackets, five or so iterations each, 200 in the worst case
 /// Tests       tests/unit/linalg/cubic_roots_test.cpp
 #pragma once

@@ -22,7 +22,7 @@
 ///             "faces volume"         the flux through E::faces is the volume
 ///             "faces outward"        every face looks away from the middle of the reference cell
 /// Measures    relative to the terms that are summed; the tolerance is round_off times epsilon of the scalar
-/// Tests       tests/laws/element_laws_test.cpp, tests/unit/testing/element_laws_test.cpp
+/// Tests       tests/laws/element_laws_{tet4,prism6}_test.cpp, tests/unit/testing/element_laws_test.cpp
 #pragma once
 
 #include <softtissue/core/notation.hpp>
