@@ -89,10 +89,10 @@ public:
 
     double operator()(const Vector3<double>& x) const {
         const Vector3<double> y = mirrored(x);
-        double d = smooth_union(trunk_.distance(x), smooth_union(chest_.distance(x), chest_.distance(y), 0.03), 0.03);
+        double d = smooth_union(trunk_.distance(x), smooth_union(chest_.distance(x), chest_.distance(y), 0.04), 0.05);
         d = smooth_union(d, smooth_union(slope_.distance(x), slope_.distance(y), 0.03), 0.035);
-        d = smooth_union(d, smooth_union(buttock_.distance(x), buttock_.distance(y), 0.045), 0.04);
-        d = smooth_union(d, smooth_union(leg(x), leg(y), 0.03), 0.045);
+        d = smooth_union(d, smooth_union(buttock_.distance(x), buttock_.distance(y), 0.05), 0.06);
+        d = smooth_union(d, smooth_union(leg(x), leg(y), 0.03), 0.07);
         d = smooth_union(d, head_and_neck(x, y), 0.03);
         return smooth_union(d, std::min(arm(x), arm(y)), 0.04);
     }
@@ -100,9 +100,9 @@ public:
 private:
     explicit HumanSolid(const Matrix3X<double>& J)
         : trunk_({0.0, 0.80, 0.0}, {0.0, 1.50, 0.0}, {0.0, 0.0, 1.0}, trunk_sections(), 0.75),
-          chest_{{0.070, 1.292, 0.050}, {0.082, 0.060, 0.042}},
+          chest_{{0.070, 1.300, 0.046}, {0.084, 0.072, 0.042}},
           slope_{{0.020, 1.478, -0.040}, {0.150, 1.425, -0.038}, 0.040, 0.038},
-          buttock_{{0.074, 0.885, -0.062}, {0.083, 0.088, 0.078}},
+          buttock_{{0.075, 0.892, -0.058}, {0.085, 0.098, 0.074}},
           thigh_(J.col(human_joint::hip), J.col(human_joint::knee), {0.0, 0.0, 1.0}, thigh_sections()),
           shank_(J.col(human_joint::knee), J.col(human_joint::ankle), {0.0, 0.0, 1.0}, shank_sections()),
           upper_arm_(J.col(human_joint::shoulder), J.col(human_joint::elbow), {0.0, 0.0, 1.0},
@@ -121,7 +121,8 @@ private:
 
     double foot(const Vector3<double>& x) const {
         const double upper = smooth_union(heel_.distance(x), instep_.distance(x), 0.03);
-        const double whole = smooth_union(smooth_union(upper, ball_.distance(x), 0.03), toes_.distance(x), 0.02);
+        const double front = smooth_union(ball_.distance(x), toes_.distance(x), 0.02);
+        const double whole = smooth_union(smooth_union(upper, sole_.distance(x), 0.02), front, 0.03);
         return smooth_intersection(whole, -x(1), 0.016);
     }
 
@@ -158,11 +159,11 @@ private:
     static std::vector<TubeSection> thigh_sections() {
         return {{-0.10, 0.080, 0.060, 0.075, 0.070}, {0.05, 0.088, 0.076, 0.086, 0.084, -0.002},
                 {0.18, 0.087, 0.080, 0.088, 0.084, -0.004}, {0.35, 0.080, 0.076, 0.085, 0.078, -0.004},
-                {0.55, 0.068, 0.067, 0.074, 0.067},  {0.75, 0.057, 0.058, 0.062, 0.056},
-                {0.90, 0.052, 0.053, 0.056, 0.050},  {1.00, 0.050, 0.052, 0.056, 0.048}};
+                {0.55, 0.068, 0.067, 0.074, 0.067},  {0.75, 0.058, 0.059, 0.063, 0.056},
+                {0.90, 0.052, 0.053, 0.056, 0.049},  {1.00, 0.049, 0.051, 0.053, 0.047}};
     }
     static std::vector<TubeSection> shank_sections() {
-        return {{-0.04, 0.050, 0.052, 0.056, 0.048}, {0.08, 0.049, 0.051, 0.050, 0.052},
+        return {{-0.04, 0.048, 0.050, 0.052, 0.047}, {0.08, 0.049, 0.051, 0.048, 0.052},
                 {0.20, 0.051, 0.053, 0.044, 0.062, -0.004}, {0.32, 0.051, 0.053, 0.042, 0.064, -0.006},
                 {0.48, 0.044, 0.046, 0.039, 0.052, -0.004}, {0.65, 0.036, 0.037, 0.036, 0.040},
                 {0.82, 0.031, 0.031, 0.033, 0.036},  {0.94, 0.032, 0.031, 0.034, 0.038},
@@ -206,16 +207,17 @@ private:
     Tube forearm_;
     Tube hand_;
     TaperedCapsule thumb_;
-    Ellipsoid heel_{{0.134, 0.042, -0.050}, {0.033, 0.046, 0.040}};
-    TaperedCapsule instep_{{0.134, 0.070, -0.012}, {0.146, 0.030, 0.090}, 0.038, 0.026};
-    Ellipsoid ball_{{0.147, 0.022, 0.088}, {0.046, 0.028, 0.055}};
-    Ellipsoid toes_{{0.152, 0.016, 0.135}, {0.043, 0.020, 0.046}};
+    Ellipsoid heel_{{0.134, 0.036, -0.052}, {0.032, 0.048, 0.040}};
+    TaperedCapsule instep_{{0.134, 0.068, -0.015}, {0.147, 0.028, 0.085}, 0.038, 0.028};
+    TaperedCapsule sole_{{0.136, 0.014, -0.050}, {0.150, 0.012, 0.080}, 0.028, 0.034};
+    Ellipsoid ball_{{0.148, 0.020, 0.090}, {0.046, 0.028, 0.055}};
+    Ellipsoid toes_{{0.151, 0.012, 0.135}, {0.041, 0.021, 0.048}};
     TaperedCapsule neck_{{0.0, 1.430, -0.032}, {0.0, 1.565, -0.012}, 0.061, 0.056};
     Ellipsoid cranium_{{0.0, 1.640, -0.004}, {0.077, 0.092, 0.096}};
     Ellipsoid face_{{0.0, 1.585, 0.030}, {0.062, 0.082, 0.066}};
     Ellipsoid jaw_{{0.0, 1.545, 0.036}, {0.050, 0.040, 0.052}};
     Ellipsoid chin_{{0.0, 1.519, 0.070}, {0.024, 0.020, 0.022}};
-    TaperedCapsule nose_{{0.0, 1.618, 0.092}, {0.0, 1.582, 0.108}, 0.007, 0.012};
+    TaperedCapsule nose_{{0.0, 1.622, 0.088}, {0.0, 1.588, 0.103}, 0.007, 0.0115};
     Ellipsoid ear_{{0.078, 1.605, -0.002}, {0.010, 0.031, 0.018}};
 };
 
