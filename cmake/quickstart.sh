@@ -32,7 +32,9 @@ cd "$(dirname "$0")/.."
 install_packages() {
     if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then
         echo "This is neither Debian nor Ubuntu. Install what these packages hold, then run the CMake presets (cmake --list-presets):" >&2
-        echo "$packages" | tr -s ' \n' '\n\n' | sed 's/^/    /' >&2
+        for package in $packages; do
+            echo "    $package" >&2
+        done
         exit 1
     fi
     missing=

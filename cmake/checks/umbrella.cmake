@@ -1,5 +1,6 @@
 # Checks that the umbrella includes exactly the headers below floor 7 that need Eigen only, in alphabetical order.
-#   cmake -D INCLUDE_DIR=<include> -P umbrella.cmake
+# With -D UPDATE=ON it rewrites the list instead.
+#   cmake -D INCLUDE_DIR=<include> [-D UPDATE=ON] -P umbrella.cmake
 cmake_minimum_required(VERSION 3.24)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
 
@@ -7,7 +8,18 @@ softtissue_list_headers(headers "${INCLUDE_DIR}")
 softtissue_split_headers(headers expected optional "${INCLUDE_DIR}")
 list(FILTER expected EXCLUDE REGEX "^softtissue/(softtissue\\.hpp|(io|model|testing)/)")
 
-softtissue_included_headers(actual "${INCLUDE_DIR}/softtissue/softtissue.hpp")
+set(umbrella "${INCLUDE_DIR}/softtissue/softtissue.hpp")
+if(UPDATE)
+    list(TRANSFORM expected REPLACE "(.+)" "#include <\\1>\n" OUTPUT_VARIABLE includes)
+    list(JOIN includes "" includes)
+    file(READ "${umbrella}" text)
+    string(REGEX REPLACE "#pragma once\n.*" "#pragma once\n\n${includes}" text "${text}")
+    file(WRITE "${umbrella}" "${text}")
+    message(STATUS "wrote ${umbrella}")
+    return()
+endif()
+
+softtissue_included_headers(actual "${umbrella}")
 if(NOT actual STREQUAL expected)
     set(missing ${expected})
     set(surplus ${actual})
@@ -19,10 +31,8 @@ if(NOT actual STREQUAL expected)
     foreach(header IN LISTS surplus)
         message(NOTICE "softtissue.hpp should not include ${header}")
     endforeach()
-    list(TRANSFORM expected REPLACE "(.+)" "#include <\\1>")
-    list(JOIN expected "\n" expected)
-    message(NOTICE "expected:\n${expected}")
-    message(FATAL_ERROR "the umbrella must list every header below floor 7 that needs Eigen only, sorted")
+    message(FATAL_ERROR "the umbrella must list every header below floor 7 that needs Eigen only, sorted; to do so:\n"
+            "cmake --build <dir> --target softtissue_update_umbrella")
 endif()
 list(LENGTH actual count)
 message(STATUS "the umbrella includes all ${count} headers that need Eigen only")

@@ -86,6 +86,7 @@
 #include <softtissue/skinning/volumetric_smpl.hpp>
 #include <softtissue/skinning/weights.hpp>
 #include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/continuation.hpp>
 #include <softtissue/solver/direct_solver.hpp>
 #include <softtissue/solver/frozen_factor_cg.hpp>
 #include <softtissue/solver/implicit_euler.hpp>
