@@ -49,8 +49,8 @@ Matrix9<Scalar> drotation_dgradient(const Svd3<Scalar>& svd) {
         const int j = (k + 2) % 3;
         const Matrix3<Scalar> Q = svd.U.col(i) * svd.V.col(j).transpose() - svd.U.col(j) * svd.V.col(i).transpose();
         const Vector9<Scalar> q = vec(Q);
-        derivative.template selfadjointView<Eigen::Lower>().rankUpdate(
-            q, Scalar(1) / twist_denominator(svd.sigma, i, j));
+        derivative.template selfadjointView<Eigen::Lower>().rankUpdate(q,
+                                                                       Scalar(1) / twist_denominator(svd.sigma, i, j));
     }
     const Matrix9<Scalar> lower = derivative;
     derivative = lower.template selfadjointView<Eigen::Lower>();

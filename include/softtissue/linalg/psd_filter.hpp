@@ -13,7 +13,6 @@
 
 #include <softtissue/core/scalar.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
@@ -35,25 +34,50 @@ Scalar filtered_eigenvalue(const Scalar& eigenvalue, PsdFilter filter) {
     return filter == PsdFilter::clamp ? Scalar(0) : Scalar(-eigenvalue);
 }
 
+namespace detail {
+
+/// Whether the Cholesky factorisation of H exists (to rounding); plain loops keep it cheap to run and to compile.
+template <RealScalar Scalar, int N>
+bool is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
+    for (int k = 0; k < N; ++k) {
+        if (!(H(k, k) > Scalar(0))) {
+            return false;
+        }
+        const Scalar inverse = Scalar(1) / H(k, k);
+        for (int j = k + 1; j < N; ++j) {
+            const Scalar factor = H(j, k) * inverse;
+            for (int i = j; i < N; ++i) {
+                H(i, j) -= factor * H(i, k);
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace detail
+
 /// H with its negative eigenvalues filtered; H itself where there are none (or `filter` is none).
 template <RealScalar Scalar, int N>
     requires(N > 0)
 Eigen::Matrix<Scalar, N, N> filtered(const Eigen::Matrix<Scalar, N, N>& H, PsdFilter filter) {
     using Matrix = Eigen::Matrix<Scalar, N, N>;
     Matrix result = H.template selfadjointView<Eigen::Lower>();
-    if (filter == PsdFilter::none || Eigen::LLT<Matrix>(H).info() == Eigen::Success) {
+    if (filter == PsdFilter::none || detail::is_positive_definite(H)) {
         return result;
     }
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(H);
     // Only the negative part is touched, so what is already positive keeps its digits.
     for (int k = 0; k < N && eigen.eigenvalues()(k) < Scalar(0); ++k) {
         const Scalar eigenvalue = eigen.eigenvalues()(k);
-        const Eigen::Matrix<Scalar, N, 1> v = eigen.eigenvectors().col(k);
-        result.template selfadjointView<Eigen::Lower>().rankUpdate(v, filtered_eigenvalue(eigenvalue, filter) -
-                                                                          eigenvalue);
+        const Scalar change = filtered_eigenvalue(eigenvalue, filter) - eigenvalue;
+        for (int j = 0; j < N; ++j) {
+            const Scalar v = change * eigen.eigenvectors()(j, k);
+            for (int i = j; i < N; ++i) {
+                result(i, j) += v * eigen.eigenvectors()(i, k);
+                result(j, i) = result(i, j);
+            }
+        }
     }
-    const Matrix lower = result;
-    result = lower.template selfadjointView<Eigen::Lower>();
     return result;
 }
 

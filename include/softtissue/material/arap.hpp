@@ -44,9 +44,7 @@ public:
 
     Parameters parameters() const { return {.stiffness = stiffness_}; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const {
-        return stiffness_ * (F - polar_rotation(F)).squaredNorm();
-    }
+    Scalar energy_density(const Matrix3<Scalar>& F) const { return stiffness_ * (F - polar_rotation(F)).squaredNorm(); }
 
     Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
         return Scalar(2) * stiffness_ * (F - polar_rotation(F));

@@ -47,10 +47,10 @@ struct FungOrthotropicParameters {
     static constexpr Real default_max_exponent =
         Real(std::numeric_limits<Real>::max_exponent) * std::numbers::ln2_v<Real> / Real(2);
 
-    Scalar normal_modulus;             ///< Y_N [Pa]
-    Scalar tangential_modulus;         ///< Y_T [Pa]
+    Scalar normal_modulus;      ///< Y_N [Pa]
+    Scalar tangential_modulus;  ///< Y_T [Pa]
     Scalar poisson_ratio = Scalar(0.2);
-    Scalar exponent = Scalar(4);       ///< eta, how fast the stiffness grows with squared strain
+    Scalar exponent = Scalar(4);               ///< eta, how fast the stiffness grows with squared strain
     Real max_exponent = default_max_exponent;  ///< eta sigma above which the exponential becomes quadratic
 };
 
@@ -148,39 +148,26 @@ public:
 
         // H = sum_k w_k m_k m_k^T + I (x) S + lambda (J - 1) d2J/dF2, with eight modes m:
         // dsigma/dF, dJ/dF, and dEb_ab/dF for the six strains.
-        constexpr int num_modes = 8;
-        Eigen::Matrix<Scalar, 9, num_modes> modes;
-        Eigen::Matrix<Scalar, num_modes, 1> weights;
-        const Matrix3<Scalar> FT = F * T;
-        modes.col(0) = vec(FT);
+        Modes modes;
+        Weights weights;
+        modes.col(0) = vec<Scalar>(F * T);
         weights(0) = coefficients_.eta * d2psi_dsigma2_over_eta;
         modes.col(1) = vec(cof);
         weights(1) = coefficients_.lambda;
-        const Matrix3<Scalar> FB = F * basis_;
-        int mode = 2;
-        for (int a = 0; a < 3; ++a) {
-            for (int b = a; b < 3; ++b, ++mode) {
-                // Twice the off-diagonal strain in the mode, a quarter and the two equal terms in the weight.
-                const Matrix3<Scalar> M = a == b ? Matrix3<Scalar>(FB.col(a) * basis_.col(a).transpose())
-                                                 : Matrix3<Scalar>(FB.col(a) * basis_.col(b).transpose() +
-                                                                   FB.col(b) * basis_.col(a).transpose());
-                modes.col(mode) = vec(M);
-                weights(mode) = dpsi_dsigma * coefficients_.tau(a, b) * (a == b ? Scalar(2) : Scalar(1));
-            }
-        }
+        add_strain_modes(F * basis_, dpsi_dsigma, modes, weights);
         Matrix9<Scalar> H = sum_of_squares(modes, weights);
         for (int j = 0; j < 3; ++j) {
             for (int l = 0; l < 3; ++l) {
-                H.template block<3, 3>(3 * j, 3 * l).diagonal().array() += dpsi_dsigma * T(j, l);
+                for (int i = 0; i < 3; ++i) {
+                    H(i + 3 * j, i + 3 * l) += dpsi_dsigma * T(j, l);
+                }
             }
         }
         add_determinant_hessian(F, Scalar(coefficients_.lambda * (determinant(F, cof) - Scalar(1))), H);
         return H;
     }
 
-    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const
-        requires RealScalar<Scalar>
-    {
+    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealScalar<Scalar> {
         return filtered(hessian(F), filter);
     }
 
@@ -210,15 +197,37 @@ private:
         return basis_ * weighted * basis_.transpose();
     }
 
+    static constexpr int num_modes = 8;
+    using Modes = Eigen::Matrix<Scalar, 9, num_modes>;
+    using Weights = Eigen::Matrix<Scalar, num_modes, 1>;
+
+    /// The modes and weights 2 to 7 of the Hessian: dpsi/dsigma d2sigma/dEb2, one term for each of the six strains.
+    void add_strain_modes(const Matrix3<Scalar>& FB, const Scalar& dpsi_dsigma, Modes& modes, Weights& weights) const {
+        int mode = 2;
+        for (int a = 0; a < 3; ++a) {
+            for (int b = a; b < 3; ++b, ++mode) {
+                // dEb_ab/dF = (f_a b_b^T + f_b b_a^T) / 2 with the columns f of F B; of the two equal off-diagonal
+                // strains each has weight 2 tau.
+                weights(mode) = dpsi_dsigma * coefficients_.tau(a, b) * (a == b ? Scalar(2) : Scalar(4));
+                for (int j = 0; j < 3; ++j) {
+                    for (int i = 0; i < 3; ++i) {
+                        modes(i + 3 * j, mode) = (FB(i, a) * basis_(j, b) + FB(i, b) * basis_(j, a)) / Scalar(2);
+                    }
+                }
+            }
+        }
+    }
+
     /// sum_k weights_k modes_k modes_k^T.
-    template <int num_modes>
-    static Matrix9<Scalar> sum_of_squares(const Eigen::Matrix<Scalar, 9, num_modes>& modes,
-                                          const Eigen::Matrix<Scalar, num_modes, 1>& weights) {
+    static Matrix9<Scalar> sum_of_squares(const Modes& modes, const Weights& weights) {
         Matrix9<Scalar> H;
         for (int column = 0; column < 9; ++column) {
-            const Eigen::Matrix<Scalar, num_modes, 1> weighted = modes.row(column).transpose().cwiseProduct(weights);
             for (int row = column; row < 9; ++row) {
-                H(row, column) = H(column, row) = modes.row(row).dot(weighted);
+                Scalar sum = Scalar(0);
+                for (int k = 0; k < num_modes; ++k) {
+                    sum += modes(row, k) * (weights(k) * modes(column, k));
+                }
+                H(row, column) = H(column, row) = sum;
             }
         }
         return H;

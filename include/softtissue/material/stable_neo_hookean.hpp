@@ -84,9 +84,7 @@ public:
         return H;
     }
 
-    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const
-        requires RealScalar<Scalar>
-    {
+    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealScalar<Scalar> {
         if (filter == PsdFilter::none) {
             return hessian(F);
         }

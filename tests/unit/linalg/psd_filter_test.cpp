@@ -26,7 +26,8 @@ struct Numbers {
 template <class Scalar, int N>
 Eigen::Matrix<Scalar, N, N> with_eigenvalues(const Eigen::Matrix<Scalar, N, 1>& eigenvalues, Numbers& numbers) {
     using Matrix = Eigen::Matrix<Scalar, N, N>;
-    const Matrix random = Matrix::NullaryExpr([&numbers](Eigen::Index, Eigen::Index) { return Scalar(numbers.next()); });
+    const Matrix random =
+        Matrix::NullaryExpr([&numbers](Eigen::Index, Eigen::Index) { return Scalar(numbers.next()); });
     const Matrix Q = Eigen::HouseholderQR<Matrix>(random).householderQ();
     const Matrix H = Q * eigenvalues.asDiagonal() * Q.transpose();
     return (H + H.transpose()) / Scalar(2);
@@ -46,7 +47,8 @@ TEST_CASE_TEMPLATE("the eigenvalues of a filtered matrix are the filtered eigenv
     const Scalar tolerance = Scalar(6 * 9) * std::numeric_limits<Scalar>::epsilon() * Scalar(7);
     Numbers numbers{7u};
     Vector9 eigenvalues;
-    eigenvalues << Scalar(-7), Scalar(-2), Scalar(-2), Scalar(-1e-3), Scalar(0), Scalar(0.5), Scalar(1), Scalar(1), Scalar(4);
+    eigenvalues << Scalar(-7), Scalar(-2), Scalar(-2), Scalar(-1e-3), Scalar(0), Scalar(0.5), Scalar(1), Scalar(1),
+        Scalar(4);
     for (int repeat = 0; repeat < 20; ++repeat) {
         const Matrix9 H = with_eigenvalues<Scalar, 9>(eigenvalues, numbers);
 
