@@ -15,8 +15,7 @@
 /// Valid       every X whose nine n_k . d_i are positive (sufficient, not necessary), however thin: the fit is done in
 ///             the frame of the mean prism, where M is well conditioned. CellMesh::validate refuses the others.
 /// Limits      one gradient a cell leaves six hourglass modes: 9 of the 18 nodal freedoms are seen, 3 are translations.
-///             g is not the volume average of dN/dX: they agree for right prisms and differ by up to 60 % on sheared
-///             ones.
+///             g is not the volume average of dN/dX: they agree for right prisms only.
 /// Source      Nolte et al. 2026, eq. (1)-(3), with the fit integrated over the cell
 /// Cost        gradient operator about 900 flop, no branch, no loop over quadrature points
 /// Tests       tests/unit/element/prism6_test.cpp, tests/laws/element_laws_prism6_test.cpp
