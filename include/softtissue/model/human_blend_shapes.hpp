@@ -12,6 +12,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/mesh/surface_normals.hpp>
 #include <softtissue/model/human_mesh.hpp>
 #include <softtissue/model/human_solid.hpp>
 
@@ -46,7 +47,7 @@ public:
 
     /// All directions, 3n x 10; weights are joints x n.
     MatrixX<double> displacement(const HumanMesh& mesh, const MatrixX<double>& weights) const {
-        const Matrix3X<double> normals = mesh.smoothed(mesh.normals(), 8);
+        const Matrix3X<double> normals = mesh.smoothed(vertex_normals<double>(mesh.vertices, mesh.faces), 8);
         MatrixX<double> result(3 * mesh.num_vertices(), Index(num_shapes));
         for (Index k = 0; k < num_shapes; ++k) {
             const Growth g = growth(k);

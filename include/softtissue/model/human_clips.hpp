@@ -132,11 +132,11 @@ struct Jump {
     static constexpr double gravity = 9.81;
     static constexpr double take_off_speed = 2.0;
     static constexpr double flight = 2.0 * take_off_speed / gravity;
-    static constexpr double crouch = 0.50;  // ends of the phases, in seconds
+    static constexpr double crouch = 0.45;  // ends of the phases, in seconds
     static constexpr double take_off = crouch + 0.32;
     static constexpr double landing = take_off + flight;
     static constexpr double deepest = landing + 0.30;
-    static constexpr double duration = deepest + 0.50;
+    static constexpr double duration = deepest + 0.45;
     static constexpr double leaving = 0.11;  // the feet take that long to follow the body into the air
 
     static constexpr double standing_height = -0.02;
@@ -201,7 +201,7 @@ struct Jump {
 };
 
 struct Twist {
-    static constexpr double duration = 1.9;
+    static constexpr double duration = 1.7;
     static constexpr double ramp = 0.45;
     static constexpr double frequency = 1.15;
 

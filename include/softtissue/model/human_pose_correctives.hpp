@@ -7,7 +7,7 @@
 ///             joints beyond it. Across the axis its length shrinks by sqrt(1 - 2 W (1 - W)(1 - cos a)). With
 ///             -sym(R - I) y = (1 - cos a) y_across, the offset
 ///                 d(x) = -W (1 - W) sym(R_j - I) (x - J_j)
-///             undoes the shrinkage up to fourth order in a, for every axis. Muscles add
+///             leaves a shrinkage of fourth order in a only, for every axis. Muscles add
 ///                 d(x) = (e . vee(R_j - I)) b(x) n(x),   e . vee = sin a for a turn by a about e.
 /// Shapes      3n x 9 (joints - 1) [m], sparse; column 9 (j - 1) + 3 a + b multiplies (R_j - I)[a, b].
 /// Valid       zero at rest; mirror symmetric.
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/mesh/surface_normals.hpp>
 #include <softtissue/model/human_mesh.hpp>
 #include <softtissue/model/human_solid.hpp>
 
@@ -38,7 +39,7 @@ public:
     /// weights are joints x n.
     SparseMatrix operator()(const HumanMesh& mesh, const MatrixX<double>& weights) const {
         const MatrixX<double> beyond = weights_beyond(weights);
-        const Matrix3X<double> normals = mesh.smoothed(mesh.normals(), 2);
+        const Matrix3X<double> normals = mesh.smoothed(vertex_normals<double>(mesh.vertices, mesh.faces), 2);
         std::vector<Eigen::Triplet<double, int>> entries;
         for (Index v = 0; v < mesh.num_vertices(); ++v) {
             const Vector3<double> x = mesh.vertices.col(v);

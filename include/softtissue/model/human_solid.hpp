@@ -4,7 +4,7 @@
 ///
 /// What        24 joints of SMPL in an A-pose (arms 48 degrees below the horizontal, elbows bent forward by 8,
 ///             feet 0.27 m apart), and a solid around them melted from tubes, capsules and ellipsoids.
-/// Shapes      rest_joints() 3 x 24 [m]; distance(x) [m], negative inside.
+/// Shapes      rest_joints() 3 x 24 [m]; HumanSolid()(x) [m], negative inside.
 ///             y up, facing +z, left = +x; mirror symmetric about x = 0; the soles lie on y = 0.
 /// Why A-pose  the armpit is open and the shoulder half way between its extremes: layers shrunk inwards from the
 ///             skin meet no fold there, and neither raising nor lowering the arm stretches it by more than 90 degrees.
@@ -85,8 +85,6 @@ class HumanSolid {
 public:
     HumanSolid() : HumanSolid(human_rest_joints()) {}
 
-    double distance(const Vector3<double>& x) const { return (*this)(x); }
-
     double operator()(const Vector3<double>& x) const {
         const Vector3<double> y = mirrored(x);
         double d = smooth_union(trunk_.distance(x), smooth_union(chest_.distance(x), chest_.distance(y), 0.04), 0.05);
@@ -94,7 +92,7 @@ public:
         d = smooth_union(d, smooth_union(buttock_.distance(x), buttock_.distance(y), 0.05), 0.06);
         d = smooth_union(d, smooth_union(leg(x), leg(y), 0.03), 0.07);
         d = smooth_union(d, head_and_neck(x, y), 0.03);
-        return smooth_union(d, std::min(arm(x), arm(y)), 0.04);
+        return smooth_union(d, std::min(arm(x), arm(y)), 0.05);
     }
 
 private:
@@ -141,6 +139,10 @@ private:
         double d = smooth_union(cranium_.distance(x), face_.distance(x), 0.03);
         d = smooth_union(d, jaw_.distance(x), 0.025);
         d = smooth_union(d, chin_.distance(x), 0.02);
+        d = smooth_union(d, smooth_union(cheek_.distance(x), cheek_.distance(y), 0.02), 0.025);
+        d = smooth_union(d, lips_.distance(x), 0.012);
+        d = smooth_intersection(d, -std::min(eye_socket_.distance(x), eye_socket_.distance(y)), 0.018);
+        d = smooth_union(d, smooth_union(eye_.distance(x), eye_.distance(y), 0.01), 0.006);
         d = smooth_union(d, nose_.distance(x), 0.014);
         d = smooth_union(d, std::min(ear_.distance(x), ear_.distance(y)), 0.01);
         return smooth_union(d, neck_.distance(x), 0.025);
@@ -148,8 +150,8 @@ private:
 
     // t is the height between 0.80 and 1.50 m; the columns are metres.
     static std::vector<TubeSection> trunk_sections() {
-        return {{0.05, 0.100, 0.100, 0.070, 0.060, 0.000},  {0.11, 0.148, 0.148, 0.094, 0.082, -0.002},
-                {0.18, 0.168, 0.168, 0.106, 0.096, -0.004}, {0.26, 0.168, 0.168, 0.110, 0.096, -0.004},
+        return {{0.03, 0.050, 0.050, 0.058, 0.050, 0.000},  {0.09, 0.096, 0.096, 0.082, 0.076, -0.002},
+                {0.17, 0.148, 0.148, 0.102, 0.094, -0.004}, {0.26, 0.167, 0.167, 0.110, 0.096, -0.004},
                 {0.34, 0.153, 0.153, 0.108, 0.088, -0.002}, {0.42, 0.139, 0.139, 0.104, 0.082, -0.002},
                 {0.50, 0.136, 0.136, 0.102, 0.084, -0.004}, {0.60, 0.144, 0.144, 0.106, 0.094, -0.010},
                 {0.70, 0.153, 0.153, 0.110, 0.102, -0.016}, {0.78, 0.156, 0.156, 0.102, 0.104, -0.022},
@@ -217,6 +219,10 @@ private:
     Ellipsoid face_{{0.0, 1.585, 0.030}, {0.062, 0.082, 0.066}};
     Ellipsoid jaw_{{0.0, 1.545, 0.036}, {0.050, 0.040, 0.052}};
     Ellipsoid chin_{{0.0, 1.519, 0.070}, {0.024, 0.020, 0.022}};
+    Ellipsoid cheek_{{0.034, 1.585, 0.062}, {0.026, 0.022, 0.026}};
+    Ellipsoid lips_{{0.0, 1.549, 0.086}, {0.023, 0.009, 0.012}};
+    Ellipsoid eye_socket_{{0.032, 1.618, 0.103}, {0.019, 0.011, 0.018}};
+    Ellipsoid eye_{{0.031, 1.617, 0.074}, {0.014, 0.011, 0.014}};
     TaperedCapsule nose_{{0.0, 1.622, 0.088}, {0.0, 1.588, 0.103}, 0.007, 0.0115};
     Ellipsoid ear_{{0.078, 1.605, -0.002}, {0.010, 0.031, 0.018}};
 };

@@ -4,7 +4,7 @@
 ///
 /// What        procedural_human<S>(): skin, 24 joints of SMPL, weights, ten shape directions, pose correctives and
 ///             joint regressor of a 1.73 m adult. For demonstrations, tests and benchmarks that must run anywhere.
-/// Shapes      about 7,200 vertices [m], twice as many triangles, closed, genus 0, mirror symmetric about x = 0;
+/// Shapes      about 7,300 vertices [m], twice as many triangles, closed, genus 0, mirror symmetric about x = 0;
 ///             y up, facing +z, left = +x, soles on y = 0. Up to 6 joints a vertex.
 /// Rest pose   an A-pose: arms 48 degrees below the horizontal (see HumanSolid). Rotations made for SMPL's T-pose
 ///             template do not fit directly.

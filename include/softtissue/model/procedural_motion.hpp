@@ -5,7 +5,7 @@
 /// What        procedural_walk, procedural_jump, procedural_twist, and procedural_motion: the three in a row.
 /// Equation    twice continuously differentiable intentions (steps of fifth degree) turned into poses by HumanPoser;
 ///             in the air the pelvis follows a parabola under gravity.
-/// Shapes      24 joints; each clip begins and ends in the rest pose. Walk 2.9 s, jump 2.7 s, twist 2.6 s, all 6.5 s.
+/// Shapes      24 joints; each clip begins and ends in the rest pose. Walk 2.9 s, jump 2.5 s, twist 2.3 s, all 6.5 s.
 /// Units       frame_rate [1/s]
 /// Valid       for procedural_human(): feet meet the floor of its rest shape.
 /// Refuses     a frame rate that is not positive (InvalidInput).
@@ -35,7 +35,7 @@ template <RealScalar S>
 Motion<S> play(std::initializer_list<HumanClip> clips, double frame_rate) {
     require(std::isfinite(frame_rate) && frame_rate > 0.0, "procedural motion: frame rate is ", frame_rate,
             ", expected > 0");
-    constexpr double passage = 0.35;  // seconds
+    constexpr double passage = 0.30;  // seconds
     const HumanPoser poser(human_rest_joints());
     double duration = 2.0 * passage;
     for (const HumanClip& clip : clips) {
