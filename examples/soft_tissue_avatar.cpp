@@ -74,7 +74,7 @@ Scene make_scene(const Settings& settings) {
         settings.body.empty() ? procedural_human<Scalar>() : read_smpl_body<Scalar>(settings.body);
     const Motion<Scalar> recorded = settings.motion.empty()
                                         ? procedural_motion<Scalar>()
-                                        : read_amass_motion<Scalar>(settings.motion, body.num_joints()).motion;
+                                        : read_amass_motion<Scalar>(settings.motion, body.num_joints());
     Motion<Scalar> motion = resample(recorded, 1.0 / settings.time_step);
     if (settings.frames > 0 && settings.frames < motion.num_frames()) {
         motion.poses.resize(size_t(settings.frames));

@@ -7,8 +7,8 @@
 #include <softtissue/element/tet4.hpp>
 #include <softtissue/energy/dead_load.hpp>
 #include <softtissue/energy/elastic_energy.hpp>
+#include <softtissue/solver/continuation.hpp>
 #include <softtissue/solver/direct_solver.hpp>
-#include <softtissue/solver/newton.hpp>
 #include <softtissue/solver/objective.hpp>
 
 namespace reference_check {
@@ -52,12 +52,13 @@ void check_static(const ReferenceCase& reference, const Connectivity<ElementType
     const VectorX<std::int32_t> fixed = reference.file.at("fixed").vector<std::int32_t>();
     const Matrix3X<double> x_fixed = reference.points("x_fixed");
     Matrix3X<double> d = Matrix3X<double>::Zero(3, X.cols());
+    Matrix3X<double> target = d;
     for (Index i = 0; i < fixed.size(); ++i) {
-        d.col(fixed(i)) = x_fixed.col(i) - X.col(fixed(i));
+        target.col(fixed(i)) = x_fixed.col(i) - X.col(fixed(i));
     }
     Objective objective(PrescribedVertices(X.cols(), {fixed.data(), size_t(fixed.size())}), executor, elastic, load);
     DirectSolver<double> linear_solver;
-    const SolveReport<double> report = minimise(objective, linear_solver, d, {.max_iterations = 500});
+    const SolveReport<double> report = follow_boundary(objective, linear_solver, d, target);
     const Matrix3X<double> x = X + d;
     checks.add(reference.name, report.succeeded() ? "equilibrium / box" : to_string(report.status),
                report.succeeded() ? (x - reference.points("x")).colwise().norm().maxCoeff() / box_size(X) : 1.0,

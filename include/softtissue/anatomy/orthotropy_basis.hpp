@@ -53,15 +53,21 @@ std::vector<Matrix3<S>> orthotropy_bases(const Connectivity<num_nodes>& cells, c
     return bases;
 }
 
-/// One basis per prism of the layer: every level of a column takes the skin's normal at its end.
+/// The skin's normal above each vertex of the layer, 3 x vertices: every level of a column has that at its end.
 template <RealScalar S>
-std::vector<Matrix3<S>> orthotropy_bases(const SoftLayer<S>& layer) {
+Matrix3X<S> column_normals(const SoftLayer<S>& layer) {
     const Matrix3X<S> skin_normals = vertex_normals(layer.skin_positions, layer.region.triangles);
     Matrix3X<S> normals(3, layer.mesh.num_vertices());
     for (Index v = 0; v < normals.cols(); ++v) {
         normals.col(v) = skin_normals.col(layer.layers.column(v));
     }
-    return orthotropy_bases(layer.mesh.cells, normals);
+    return normals;
+}
+
+/// One basis per prism of the layer.
+template <RealScalar S>
+std::vector<Matrix3<S>> orthotropy_bases(const SoftLayer<S>& layer) {
+    return orthotropy_bases(layer.mesh.cells, column_normals(layer));
 }
 
 }  // namespace softtissue

@@ -12,9 +12,9 @@
 #pragma once
 
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/symmetric_eigen.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 namespace softtissue {
 
@@ -65,15 +65,17 @@ Eigen::Matrix<Scalar, N, N> filtered(const Eigen::Matrix<Scalar, N, N>& H, PsdFi
     if (filter == PsdFilter::none || detail::is_positive_definite(H)) {
         return result;
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(H);
+    const SymmetricEigen<Scalar, N> eigen = symmetric_eigen(H);
     // Only the negative part is touched, so what is already positive keeps its digits.
-    for (int k = 0; k < N && eigen.eigenvalues()(k) < Scalar(0); ++k) {
-        const Scalar eigenvalue = eigen.eigenvalues()(k);
-        const Scalar change = filtered_eigenvalue(eigenvalue, filter) - eigenvalue;
+    for (int k = 0; k < N; ++k) {
+        const Scalar change = filtered_eigenvalue(eigen.values(k), filter) - eigen.values(k);
+        if (change == Scalar(0)) {
+            continue;
+        }
         for (int j = 0; j < N; ++j) {
-            const Scalar v = change * eigen.eigenvectors()(j, k);
+            const Scalar v = change * eigen.vectors(j, k);
             for (int i = j; i < N; ++i) {
-                result(i, j) += v * eigen.eigenvectors()(i, k);
+                result(i, j) += v * eigen.vectors(i, k);
                 result(j, i) = result(i, j);
             }
         }
