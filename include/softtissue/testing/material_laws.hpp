@@ -21,12 +21,12 @@
 ///             "objective stress"         P(R F) = R P(F)
 ///             "isotropic energy"         psi(F Q) = psi(F)
 ///             "rest stress"              P(I) = 0
-///             "small strain"             H(I) is the linear elasticity of the stated Lame parameters
+///             "small strain"             H(I) is the linear elasticity of the stated Lamé parameters
 ///             "projection positive"      no eigenvalue of the filtered H is negative, for clamp and absolute
 ///             "projection spectrum"      the filtered H is that of a numeric eigen-decomposition
 ///             "projection unchanged"     where H has no negative eigenvalue, filtering leaves it as it is
-/// Measures    relative to |H| (stress: |H| |F|, energy: |psi| + |H| |F|^2), the size of the terms that cancel in them;
-///             the tolerance is MaterialLawOptions::round_off times epsilon of the scalar
+/// Measures    relative to |H| (stress: |H| |F|, energy: |psi| + |H| |F|^2), the size of the terms that cancel in them,
+///             |.| the sum of absolute entries; the tolerance is MaterialLawOptions::round_off times epsilon of the scalar
 /// Tests       tests/laws/material_laws_test.cpp, tests/unit/testing/material_laws_test.cpp
 #pragma once
 
@@ -34,6 +34,7 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/material/concepts.hpp>
+#include <softtissue/material/elastic_constants.hpp>
 #include <softtissue/testing/law_report.hpp>
 #include <softtissue/testing/random_states.hpp>
 #include <softtissue/testing/taylor_rate.hpp>
@@ -50,12 +51,6 @@
 
 namespace softtissue {
 
-/// The Lame parameters of linear elasticity, [Pa].
-struct SmallStrainLimit {
-    double mu;
-    double lambda;
-};
-
 /// Which laws a material claims to obey, and where.
 struct MaterialLawOptions {
     /// The states the material is made for; a law with a barrier leaves out the inverted ones.
@@ -67,7 +62,7 @@ struct MaterialLawOptions {
     bool is_isotropic = false;          ///< true where the material has no preferred direction
     bool is_rest_stress_free = true;    ///< false for a pre-stretched material
     bool has_exact_projection = true;   ///< false where projected_hessian() is positive but not the filtered spectrum
-    std::optional<SmallStrainLimit> small_strain{};
+    std::optional<LameParameters<double>> small_strain{};  ///< the linear elasticity it becomes at F = I
 
     /// Allowed round-off, in epsilon of the scalar: a sum of 81 products (projection) with a factor of safety.
     double round_off = 1000;
@@ -75,14 +70,40 @@ struct MaterialLawOptions {
 
 namespace detail {
 
-/// Measures the laws of one material at one state after the other.
-template <HyperelasticMaterial M>
+/// Any material over Scalar behind four function pointers, so that the suite is compiled once and not per material.
+template <RealScalar Scalar>
+struct MaterialUnderTest {
+    using Gradient = const Matrix3<Scalar>&;
+
+    const void* material;
+    Scalar (*energy_density_of)(const void*, Gradient);
+    Matrix3<Scalar> (*first_piola_of)(const void*, Gradient);
+    Matrix9<Scalar> (*hessian_of)(const void*, Gradient);
+    Matrix9<Scalar> (*projected_hessian_of)(const void*, Gradient, PsdFilter);
+
+    template <HyperelasticMaterial M>
+    static MaterialUnderTest of(const M& m) {
+        return {&m, [](const void* p, Gradient F) { return static_cast<const M*>(p)->energy_density(F); },
+                [](const void* p, Gradient F) { return static_cast<const M*>(p)->first_piola(F); },
+                [](const void* p, Gradient F) { return static_cast<const M*>(p)->hessian(F); },
+                [](const void* p, Gradient F, PsdFilter filter) {
+                    return softtissue::projected_hessian(*static_cast<const M*>(p), F, filter);
+                }};
+    }
+
+    Scalar energy_density(Gradient F) const { return energy_density_of(material, F); }
+    Matrix3<Scalar> first_piola(Gradient F) const { return first_piola_of(material, F); }
+    Matrix9<Scalar> hessian(Gradient F) const { return hessian_of(material, F); }
+    Matrix9<Scalar> projected_hessian(Gradient F, PsdFilter filter) const {
+        return projected_hessian_of(material, F, filter);
+    }
+};
+
+/// Measures the laws of a material at one state after the other.
+template <RealScalar Scalar>
 class MaterialLawSuite {
 public:
-    using Scalar = typename M::Scalar;
-    static_assert(RealScalar<Scalar>, "check_material_laws needs a material over float or double");
-
-    MaterialLawSuite(const M& material, const MaterialLawOptions& options)
+    MaterialLawSuite(const MaterialUnderTest<Scalar>& material, const MaterialLawOptions& options)
         : material_(material),
           options_(options),
           random_(options.seed),
@@ -99,8 +120,8 @@ public:
     }
 
 private:
-    const M& material_;
-    const MaterialLawOptions& options_;
+    MaterialUnderTest<Scalar> material_;
+    MaterialLawOptions options_;
     RandomGenerator random_;
     double tolerance_;
     LawReport report_;
@@ -112,8 +133,11 @@ private:
         const Matrix9<Scalar> H = material_.hessian(F);
         const bool is_finite = std::isfinite(psi) && P.allFinite() && H.allFinite();
         report_.at_least("finite", is_finite ? 1 : 0, 1, where);
+        if (!is_finite) {
+            return;
+        }
         check_rates(F, P, H, where);
-        report_.at_most("hessian symmetry", relative((H - H.transpose()).norm(), H.norm()), tolerance_, where);
+        report_.at_most("hessian symmetry", relative(size(H - H.transpose()), size(H)), tolerance_, where);
         check_symmetries(F, psi, P, H, where);
         for (const PsdFilter filter : {PsdFilter::clamp, PsdFilter::absolute}) {
             check_projection(F, H, filter, where);
@@ -138,32 +162,33 @@ private:
     void check_symmetries(const Matrix3<Scalar>& F, Scalar psi, const Matrix3<Scalar>& P, const Matrix9<Scalar>& H,
                           const std::string& where) {
         const Matrix3<Scalar> R = random_rotation<Scalar>(random_);
-        const Scalar stress_scale = H.norm() * F.norm();
-        const Scalar energy_scale = std::abs(psi) + stress_scale * F.norm();
+        const double stress_scale = size(H) * size(F);
+        const double energy_scale = std::abs(double(psi)) + stress_scale * size(F);
         if (options_.is_objective) {
             const Matrix3<Scalar> RF = R * F;
-            const Scalar energy_error = std::abs(material_.energy_density(RF) - psi);
-            const Scalar stress_error = (material_.first_piola(RF) - R * P).norm();
+            const double energy_error = std::abs(double(material_.energy_density(RF) - psi));
+            const double stress_error = size(material_.first_piola(RF) - R * P);
             report_.at_most("objective energy", relative(energy_error, energy_scale), tolerance_, where);
             report_.at_most("objective stress", relative(stress_error, stress_scale), tolerance_, where);
         }
         if (options_.is_isotropic) {
-            const Scalar error = std::abs(material_.energy_density(F * R) - psi);
+            const double error = std::abs(double(material_.energy_density(F * R) - psi));
             report_.at_most("isotropic energy", relative(error, energy_scale), tolerance_, where);
         }
     }
 
     void check_projection(const Matrix3<Scalar>& F, const Matrix9<Scalar>& H, PsdFilter filter,
                           const std::string& where) {
-        const Matrix9<Scalar> projected = projected_hessian(material_, F, filter);
-        const Scalar scale = H.norm();
+        const Matrix9<Scalar> projected = material_.projected_hessian(F, filter);
+        const double scale = size(H);
         report_.at_least("projection positive", relative(smallest_eigenvalue(projected), scale), -tolerance_, where);
         if (options_.has_exact_projection) {
-            const Scalar error = (projected - filtered(H, filter)).norm();
+            const double error = size(projected - filtered(H, filter));
             report_.at_most("projection spectrum", relative(error, scale), tolerance_, where);
         }
-        if (relative(smallest_eigenvalue(H), scale) >= -tolerance_) {
-            report_.at_most("projection unchanged", relative((projected - H).norm(), scale), 10 * tolerance_, where);
+        // Eigenvalues that are 0 up to round-off count as 0: filtering all nine moves the entries of H by 54 times as much.
+        if (relative(smallest_eigenvalue(H), scale) >= -tolerance_ / 100) {
+            report_.at_most("projection unchanged", relative(size(projected - H), scale), tolerance_, where);
         }
     }
 
@@ -171,16 +196,16 @@ private:
         const Matrix3<Scalar> I = Matrix3<Scalar>::Identity();
         const Matrix9<Scalar> H = material_.hessian(I);
         if (options_.is_rest_stress_free) {
-            report_.at_most("rest stress", relative(material_.first_piola(I).norm(), H.norm()), tolerance_, "I");
+            report_.at_most("rest stress", relative(size(material_.first_piola(I)), size(H)), tolerance_, "I");
         }
         if (options_.small_strain) {
             const Matrix9<Scalar> expected = linear_elasticity(*options_.small_strain);
-            report_.at_most("small strain", relative((H - expected).norm(), expected.norm()), tolerance_, "I");
+            report_.at_most("small strain", relative(size(H - expected), size(expected)), tolerance_, "I");
         }
     }
 
     /// d P / d F of linear elasticity: lambda tr(eps) I + 2 mu eps.
-    static Matrix9<Scalar> linear_elasticity(const SmallStrainLimit& lame) {
+    static Matrix9<Scalar> linear_elasticity(const LameParameters<double>& lame) {
         Matrix9<Scalar> H;
         for (int k = 0; k < 9; ++k) {
             const Matrix3<Scalar> D = unvec<Scalar>(Vector9<Scalar>::Unit(k));
@@ -191,14 +216,18 @@ private:
         return H;
     }
 
-    static Scalar smallest_eigenvalue(const Matrix9<Scalar>& H) {
+    static double smallest_eigenvalue(const Matrix9<Scalar>& H) {
         return Eigen::SelfAdjointEigenSolver<Matrix9<Scalar>>(H, Eigen::EigenvaluesOnly).eigenvalues()[0];
     }
 
-    /// error / scale; an error without a scale (both 0) is none.
-    static double relative(Scalar error, Scalar scale) {
-        return error == Scalar(0) ? 0 : double(error) / double(scale);
+    /// Sum of absolute values: unlike a sum of squares it does not overflow, unlike a maximum it does not lose a NaN.
+    template <class Derived>
+    static double size(const Eigen::MatrixBase<Derived>& matrix) {
+        return double(matrix.template lpNorm<1>());
     }
+
+    /// error / scale; an error without a scale (both 0) is none.
+    static double relative(double error, double scale) { return error == 0 ? 0 : error / scale; }
 
     static std::string description(const Matrix3<Scalar>& F, std::string_view state_name) {
         std::ostringstream text;
@@ -214,7 +243,9 @@ private:
 /// Checks every law that the options claim, on states of each class they name.
 template <HyperelasticMaterial M>
 LawReport check_material_laws(const M& material, const MaterialLawOptions& options = {}) {
-    return detail::MaterialLawSuite<M>(material, options).report();
+    using Scalar = typename M::Scalar;
+    static_assert(RealScalar<Scalar>, "check_material_laws needs a material over float or double");
+    return detail::MaterialLawSuite<Scalar>(detail::MaterialUnderTest<Scalar>::of(material), options).report();
 }
 
 }  // namespace softtissue

@@ -6,7 +6,8 @@
 ///     const double slope = material.first_piola(F).cwiseProduct(D).sum();
 ///     CHECK(taylor_rate(energy, slope).is_at_least(2));
 ///
-/// What        the order p of r(h) = |f(h) - f(0) - h f'| + |f(-h) - f(0) + h f'|, f real or an Eigen matrix
+/// What        the order p of r(h) = |f(h) - f(0) - h f'| + |f(-h) - f(0) + h f'|, f real or an Eigen matrix,
+///             |.| the sum of absolute entries
 /// Equation    r = O(h^2) where f' is the derivative at 0, r = O(h) where it is not: f' needs no tolerance.
 ///             Two signs of h: an odd and an even term of r cannot cancel each other.
 /// Method      h = 1/8, 1/16, ... down to sqrt(128 epsilon): smaller h^2 drown even where f has no other round-off.
@@ -47,7 +48,7 @@ Scalar magnitude(Scalar x) {
 }
 template <class Derived>
 typename Derived::RealScalar magnitude(const Eigen::MatrixBase<Derived>& x) {
-    return x.norm();
+    return x.template lpNorm<1>();  // squares could overflow
 }
 
 /// The order of `remainders`, one per halving of the step, largest step first.
