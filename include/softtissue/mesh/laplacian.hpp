@@ -26,6 +26,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -74,7 +75,7 @@ Scalar checked_volume(const NodePositions<Tet4, Scalar>& nodes, Index c) {
     return volume;
 }
 
-/// The sum of one local matrix per cell.
+/// The sum of one symmetric local matrix per cell; only its upper triangle is read, so the sum is symmetric to the bit.
 template <RealScalar Scalar, int num_nodes, class LocalMatrix>
 Eigen::SparseMatrix<Scalar> assemble_scalar(Index num_vertices, const Connectivity<num_nodes>& cells,
                                             const LocalMatrix& local_matrix) {
@@ -84,7 +85,7 @@ Eigen::SparseMatrix<Scalar> assemble_scalar(Index num_vertices, const Connectivi
         const Eigen::Matrix<Scalar, num_nodes, num_nodes> local = local_matrix(c);
         for (int j = 0; j < num_nodes; ++j) {
             for (int i = 0; i < num_nodes; ++i) {
-                entries.emplace_back(cells(i, c), cells(j, c), local(i, j));
+                entries.emplace_back(cells(i, c), cells(j, c), local(std::min(i, j), std::max(i, j)));
             }
         }
     }
