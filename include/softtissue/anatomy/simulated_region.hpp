@@ -35,9 +35,9 @@ using JointGroups = std::vector<std::vector<std::int32_t>>;
 inline JointGroups smpl_extremities() { return {{15}, {7, 8, 10, 11}, {20, 21, 22, 23}}; }
 
 struct RegionOptions {
-    std::optional<JointGroups> extremities;
+    std::optional<JointGroups> extremities = {};
     double weight_threshold = 0.5;
-    std::vector<std::int32_t> excluded_vertices;
+    std::vector<std::int32_t> excluded_vertices = {};
 };
 
 template <RealScalar S>

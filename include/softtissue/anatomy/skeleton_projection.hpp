@@ -4,12 +4,12 @@
 ///
 /// What        closest points on the bones, and their smoothing along the skeleton.
 /// Equation    bones = segments from each joint's parent to the joint (a leaf joint is the end of its parent's bone; a
-///             skeleton of one joint is that point). Smoothing, per round and vertex: p_i <- closest point on the bones to
-///             the mean of the neighbours' p_j.
+///             skeleton of one joint is that point). Smoothing, per round and inner vertex: p_i <- closest point on the bones
+///             to the mean of the neighbours' p_j. Vertices on the boundary of the surface keep their projection.
 /// Shapes      joints 3 x num_joints [m]; projections 3 x n [m].
 /// Source      Romero et al. 2020, section 3.2.
-/// Departs     a fixed number of rounds instead of "until convergence": nothing anchors the projections, with many rounds
-///             they slide together.
+/// Departs     a fixed number of rounds instead of "until convergence": only the boundary anchors the projections, with many
+///             rounds they slide together.
 /// Cost        rounds x n x bones point-segment distances
 /// Tests       tests/unit/anatomy/skeleton_projection_test.cpp
 #pragma once
@@ -21,6 +21,7 @@
 #include <softtissue/skinning/kinematic_tree.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -77,10 +78,19 @@ Matrix3X<S> project_to_skeleton(const TriangleMesh& mesh, const Matrix3X<S>& pos
     for (Index v = 0; v < positions.cols(); ++v) {
         projections.col(v) = bones.closest_point(positions.col(v));
     }
+    std::vector<bool> is_boundary(size_t(mesh.num_vertices()), false);
+    for (const TriangleMesh::Edge& edge : mesh.edges()) {
+        if (edge.is_boundary()) {
+            is_boundary[size_t(edge.vertices[0])] = is_boundary[size_t(edge.vertices[1])] = true;
+        }
+    }
     Matrix3X<S> previous;
     for (int round = 0; round < rounds; ++round) {
         previous = projections;
         for (Index v = 0; v < positions.cols(); ++v) {
+            if (is_boundary[size_t(v)]) {
+                continue;
+            }
             Vector3<S> mean = Vector3<S>::Zero();
             for (const std::int32_t w : mesh.neighbours(v)) {
                 mean += previous.col(w);

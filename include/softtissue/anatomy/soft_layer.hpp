@@ -42,8 +42,8 @@ struct SoftLayerOptions {
     S bone_radius = S(0.008);
     /// The layer thins towards a cut over this distance, to minimum_thickness at the cut.
     S decay_distance = S(0.08);
-    /// Rounds of smoothing along the skeleton. More is not better: nothing anchors the projections, they slide together.
-    int projection_rounds = 50;
+    /// Rounds of smoothing along the skeleton; hundreds more let the projections slide together.
+    int projection_rounds = 200;
     /// Cosine towards every incident skin triangle that a direction is given, where the skin allows it.
     S wanted_cosine = S(0.3);
     /// A skin vertex whose best possible cosine is below this has no room for a layer and leaves the region.

@@ -50,9 +50,9 @@ public:
         for (int sweep = 0; sweep < regrowth_sweeps; ++sweep) {
             regrow(wanted, result.thickness);
         }
-        for (int round = 0; round < max_crossing_rounds; ++round) {
+        for (int round = 0;; ++round) {
             const std::vector<std::int32_t> crossing = crossing_columns(result.thickness, result.crossings_left);
-            if (crossing.empty()) {
+            if (crossing.empty() || round == max_crossing_rounds) {
                 break;
             }
             take_away(crossing, result);
@@ -147,7 +147,7 @@ private:
         crossings_left = 0;
         for (const auto& [s, t] : pairs) {
             if (t < m) {
-                skin_pairs.emplace_back(s, t);  // sorted before all pairs with inner triangles of the same s
+                skin_pairs.emplace_back(s, t);
             }
         }
         for (const auto& [s, t] : pairs) {
@@ -155,12 +155,15 @@ private:
                 continue;
             }
             ++crossings_left;
-            const auto below = std::minmax(static_cast<std::int32_t>(s % m), static_cast<std::int32_t>(t % m));
-            if (std::find(skin_pairs.begin(), skin_pairs.end(),
-                          std::pair<std::int32_t, std::int32_t>(below.first, below.second)) == skin_pairs.end()) {
-                for (const std::int32_t triangle : {below.first, below.second}) {
-                    marked.insert(marked.end(), mesh_.triangles().col(triangle).begin(),
-                                  mesh_.triangles().col(triangle).end());
+            const std::pair<std::int32_t, std::int32_t> below =
+                std::minmax({static_cast<std::int32_t>(s % m), static_cast<std::int32_t>(t % m)});
+            if (std::binary_search(skin_pairs.begin(), skin_pairs.end(), below)) {
+                continue;
+            }
+            for (const std::int32_t triangle : {s, t}) {
+                if (triangle >= m) {  // an inner one: thinner columns move it
+                    marked.insert(marked.end(), mesh_.triangles().col(triangle - m).begin(),
+                                  mesh_.triangles().col(triangle - m).end());
                 }
             }
         }

@@ -125,8 +125,8 @@ private:
             return std::array{x.low, x.high, x.triangle} < std::array{y.low, y.high, y.triangle};
         });
         for (const HalfEdge& h : half_edges) {
-            const bool is_second = !edges_.empty() && std::minmax(edges_.back().vertices[0], edges_.back().vertices[1]) ==
-                                                          std::pair<const std::int32_t&, const std::int32_t&>(h.low, h.high);
+            const bool is_second = !edges_.empty() && std::minmax({edges_.back().vertices[0], edges_.back().vertices[1]}) ==
+                                                          std::pair(h.low, h.high);
             if (!is_second) {
                 edges_.push_back({h.ascending ? std::array{h.low, h.high} : std::array{h.high, h.low},
                                   {h.triangle, no_triangle}});
