@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -101,8 +100,10 @@ TEST_CASE("integers are never bent") {
     CHECK(refused(std::vector<std::uint32_t>{0, 4294967295U}, std::int32_t()) ==
           "array: element 1 is 4294967295, expected a whole number from -2147483648 to 2147483647");
     CHECK(contains(refused(std::vector<double>{1.0, 2.5}, int()), "element 1 is 2.5, expected a whole number"));
-    CHECK(contains(refused(std::vector<float>{NAN}, int()), "expected a whole number"));
-    CHECK(contains(refused(std::vector<double>{-INFINITY}, std::int64_t()), "expected a whole number"));
+    CHECK(contains(refused(std::vector<float>{std::numeric_limits<float>::quiet_NaN()}, int()),
+                   "expected a whole number"));
+    CHECK(contains(refused(std::vector<double>{-std::numeric_limits<double>::infinity()}, std::int64_t()),
+                   "expected a whole number"));
     CHECK(contains(refused(std::vector<double>{9223372036854775808.0}, std::int64_t()), "expected a whole number"));
     CHECK(contains(refused(std::vector<float>{2147483648.0F}, std::int32_t()), "expected a whole number"));
     CHECK(contains(refused(std::vector<int>{-1}, std::uint8_t()),
