@@ -9,7 +9,7 @@
 ///             inverse. Rigid blends (DualQuaternion) have 1; LinearBlend of two joints of equal weight a twist of
 ///             angle a apart has cos(a/2), and blends of more joints can mirror (negative value).
 /// Source      Romero et al. 2020, sec. 4.2
-/// Cost        unposed: 60 flop per vertex; check: a determinant per vertex, a 3x3 eigen-decomposition where it is small
+/// Cost        unposed: 60 flop per vertex; check: the eigenvalues of a 3x3 matrix in closed form per vertex
 /// Tests       tests/unit/skinning/inverse_test.cpp, laws: tests/laws/skinning_laws_test.cpp
 #pragma once
 
@@ -20,8 +20,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <type_traits>
 
@@ -40,36 +40,52 @@ struct BlendReport {
     Index num_near_singular = 0;
 };
 
-/// Smallest singular value with the sign of the determinant: det A / |cofactors(A)|_2, accurate near zero.
+namespace detail {
+
+/// C = cofactors(A): |C|_2 = s1 s2 and s3 = det A / |C|_2, without cancellation near s3 = 0.
+template <RealScalar S>
+S signed_smallest_singular_value(const Matrix3<S>& A, const Matrix3<S>& C, S largest_eigenvalue_of_gram) {
+    return largest_eigenvalue_of_gram > S(0) ? C.col(0).dot(A.col(0)) / std::sqrt(largest_eigenvalue_of_gram) : S(0);
+}
+
+/// The same in closed form: five times faster, relative error up to about sqrt(epsilon).
+template <RealScalar S>
+S smallest_singular_value_estimate(const Matrix3<S>& A) {
+    const Matrix3<S> C = cofactors(A);
+    const Matrix3<S> gram = C.transpose() * C;
+    Eigen::SelfAdjointEigenSolver<Matrix3<S>> solver;
+    solver.computeDirect(gram, Eigen::EigenvaluesOnly);
+    return signed_smallest_singular_value(A, C, solver.eigenvalues()(2));
+}
+
+}  // namespace detail
+
+/// Smallest singular value with the sign of the determinant, to rounding.
 template <RealScalar S>
 S signed_smallest_singular_value(const Matrix3<S>& A) {
     const Matrix3<S> C = cofactors(A);
     const Matrix3<S> gram = C.transpose() * C;
-    const S largest =
-        Eigen::SelfAdjointEigenSolver<Matrix3<S>>(gram, Eigen::EigenvaluesOnly).eigenvalues()(2);
-    return largest > S(0) ? C.col(0).dot(A.col(0)) / std::sqrt(largest) : S(0);
+    const Eigen::SelfAdjointEigenSolver<Matrix3<S>> solver(gram, Eigen::EigenvaluesOnly);
+    return detail::signed_smallest_singular_value<S>(A, C, solver.eigenvalues()(2));
 }
 
-/// Finds the vertex whose blended transform is closest to singular, and how many are below `threshold`.
+/// Finds the vertex whose blended transform is closest to singular (of several within sqrt(epsilon), any), and how
+/// many are below `threshold`.
 template <RealScalar S>
 BlendReport<S> check_blends(std::span<const AffineTransform<S>> transforms,
                             std::type_identity_t<S> threshold = near_singular_blend<S>) {
     require(!transforms.empty(), "check_blends: no transforms, expected one per vertex");
     BlendReport<S> report;
+    S smallest = std::numeric_limits<S>::infinity();
     for (size_t v = 0; v < transforms.size(); ++v) {
-        const Matrix3<S>& A = transforms[v].linear;
-        // s3 = det/(s1 s2) >= 2 det/|A|^2: most vertices need no more than this bound
-        const S bound = S(2) * cofactors(A).col(0).dot(A.col(0)) / A.squaredNorm();
-        if (v > 0 && bound >= std::max(threshold, report.smallest_singular_value)) {
-            continue;
-        }
-        const S value = signed_smallest_singular_value(A);
-        if (v == 0 || value < report.smallest_singular_value) {
+        const S value = detail::smallest_singular_value_estimate(transforms[v].linear);
+        if (!(value >= smallest) && !std::isnan(smallest)) {  // a transform that is not finite is the worst
+            smallest = value;
             report.vertex = Index(v);
-            report.smallest_singular_value = value;
         }
-        report.num_near_singular += value < threshold ? 1 : 0;
+        report.num_near_singular += value >= threshold ? 0 : 1;
     }
+    report.smallest_singular_value = signed_smallest_singular_value(transforms[size_t(report.vertex)].linear);
     report.near_singular = report.num_near_singular > 0;
     return report;
 }

@@ -115,6 +115,16 @@ TEST_CASE_TEMPLATE("rigid transforms have smallest singular value one; a mirrori
     CHECK(report.num_near_singular == 2);
 }
 
+TEST_CASE_TEMPLATE("a transform that is not finite is the worst", S, float, double) {
+    std::vector<AffineTransform<S>> transforms(4);
+    transforms[1].linear(0, 2) = std::numeric_limits<S>::quiet_NaN();
+    transforms[2].linear.setZero();
+    const BlendReport<S> report = check_blends<S>(transforms);
+    CHECK(report.vertex == 1);
+    CHECK(report.near_singular);
+    CHECK(report.num_near_singular == 2);
+}
+
 TEST_CASE("throws only on request, naming the vertex") {
     PosedBody<double> posed = random_body<double>(3);
     CHECK_NOTHROW(require_invertible_blends(posed));

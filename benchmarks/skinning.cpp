@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Skinning kernels on a generated tube body of SMPL's size and sparsity; and the same body by dense arrays.
+
+#include <softtissue/skinning/blended_rotation.hpp>
+#include <softtissue/skinning/dual_quaternion.hpp>
+#include <softtissue/skinning/inverse.hpp>
+#include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/skinning/volumetric_smpl.hpp>
+#include <softtissue/testing/random_states.hpp>
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace softtissue;
+
+constexpr Index num_joints = 24;
+
+/// A chain of 24 joints along x; three to four joints a vertex, 4 % of the pose blend shapes not zero.
+template <class S>
+SmplBody<S> chain_body(Index num_vertices) {
+    RandomGenerator random(1);
+    SmplBody<S> body;
+    std::vector<std::int32_t> parents;
+    for (std::int32_t j = 0; j < num_joints; ++j) {
+        parents.push_back(j - 1);
+    }
+    body.tree = KinematicTree(parents);
+    body.template_vertices.resize(3, num_vertices);
+    MatrixX<S> weights(num_vertices, num_joints);
+    std::vector<Eigen::Triplet<S>> regressor, directions;
+    for (Index v = 0; v < num_vertices; ++v) {
+        const double x = double(v) * double(num_joints - 1) / double(num_vertices - 1);
+        body.template_vertices.col(v) << S(0.07 * x), S(0.1 * random.normal()), S(0.1 * random.normal());
+        for (Index j = 0; j < num_joints; ++j) {
+            const S distance = S(std::abs(x - double(j)));
+            weights(v, j) = distance < S(1.75) ? S(1.75) - distance : S(0);
+        }
+        weights.row(v) /= weights.row(v).sum();
+        regressor.emplace_back(int(std::lround(x)), int(v), S(double(num_joints) / double(num_vertices)));
+        for (int c = 0; c < 9 * (num_joints - 1); ++c) {
+            if (std::abs(x - double(c) / 9 - 1) < 0.5) {
+                for (int d = 0; d < 3; ++d) {
+                    directions.emplace_back(int(3 * v) + d, c, S(0.01 * random.normal()));
+                }
+            }
+        }
+    }
+    body.weights = SkinningWeights<S>(weights);
+    body.joint_regressor.resize(num_joints, num_vertices);
+    body.joint_regressor.setFromTriplets(regressor.begin(), regressor.end());
+    body.shape_directions = MatrixX<S>::Zero(3 * num_vertices, 10);
+    body.pose_directions.resize(3 * num_vertices, 9 * (num_joints - 1));
+    body.pose_directions.setFromTriplets(directions.begin(), directions.end());
+    return body;
+}
+
+template <class S>
+Pose<S> walking_pose() {
+    RandomGenerator random(2);
+    Pose<S> pose = Pose<S>::rest(num_joints);
+    for (Index j = 0; j < num_joints; ++j) {
+        pose.rotation_vectors.col(j) = S(0.3) * random_unit<Vector3<S>>(random);
+    }
+    return pose;
+}
+
+void count_rows(benchmark::State& state) {
+    state.counters["rows/s"] = benchmark::Counter(double(state.range(0)), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+template <class Policy>
+void pose_body(benchmark::State& state) {
+    using S = typename Policy::Scalar;
+    const VolumetricSmpl<S, Policy> model(chain_body<S>(state.range(0)));
+    const Pose<S> pose = walking_pose<S>();
+    PosedBody<S> posed = model.pose(pose);
+    for (auto _ : state) {
+        model.pose_into(pose, posed);
+        benchmark::DoNotOptimize(posed.positions.data());
+        benchmark::ClobberMemory();
+    }
+    count_rows(state);
+}
+
+/// Baseline: dense weights and dense pose blend shapes, as the definition reads.
+template <class S>
+void naive_pose_body(benchmark::State& state) {
+    const SmplBody<S> body = chain_body<S>(state.range(0));
+    const VolumetricSmpl<S> model(body);
+    const MatrixX<S> weights = body.weights.dense(), directions = body.pose_directions.toDense();
+    const Pose<S> pose = walking_pose<S>();
+    Matrix3X<S> positions(3, state.range(0));
+    for (auto _ : state) {
+        const auto joints = joint_transforms(body.tree, model.rest_joints(), pose);
+        VectorX<S> features(9 * (num_joints - 1));
+        for (Index j = 1; j < num_joints; ++j) {
+            const Matrix3<S> transposed = local_rotation(pose, j).transpose() - Matrix3<S>::Identity();
+            features.template segment<9>(9 * (j - 1)) = vec<S>(transposed);
+        }
+        const VectorX<S> offsets = directions * features;
+        for (Index v = 0; v < positions.cols(); ++v) {
+            AffineTransform<S> T{Matrix3<S>::Zero(), Vector3<S>::Zero()};
+            for (Index j = 0; j < num_joints; ++j) {
+                T.linear += weights(v, j) * joints[size_t(j)].linear;
+                T.translation += weights(v, j) * joints[size_t(j)].translation;
+            }
+            positions.col(v) = T(model.rest_vertices().col(v) + offsets.template segment<3>(3 * v));
+        }
+        benchmark::DoNotOptimize(positions.data());
+        benchmark::ClobberMemory();
+    }
+    count_rows(state);
+}
+
+template <class S>
+void unpose_body(benchmark::State& state) {
+    const VolumetricSmpl<S> model(chain_body<S>(state.range(0)));
+    const PosedBody<S> posed = model.pose(walking_pose<S>());
+    Matrix3X<S> u(3, state.range(0));
+    for (auto _ : state) {
+        unposed_into(posed, posed.positions, u);
+        benchmark::DoNotOptimize(u.data());
+        benchmark::ClobberMemory();
+    }
+    count_rows(state);
+}
+
+template <class Policy>
+void check_body(benchmark::State& state) {
+    using S = typename Policy::Scalar;
+    const VolumetricSmpl<S, Policy> model(chain_body<S>(state.range(0)));
+    const PosedBody<S> posed = model.pose(walking_pose<S>());
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(check_blends<S>(posed.transforms));
+    }
+    count_rows(state);
+}
+
+template <class S>
+void blend_rotations(benchmark::State& state) {
+    const VolumetricSmpl<S> model(chain_body<S>(state.range(0)));
+    const BlendedRotations<S> blended(model.weights());
+    const PosedBody<S> posed = model.pose(walking_pose<S>());
+    const std::vector<Quaternion<S>> bones = bone_quaternions<S>(posed.joint_transforms);
+    std::vector<Matrix3<S>> rotations = blended.rotations(posed.joint_transforms);
+    for (auto _ : state) {
+        blended.rotations_into(bones, rotations);
+        benchmark::DoNotOptimize(rotations.data());
+        benchmark::ClobberMemory();
+    }
+    count_rows(state);
+}
+
+constexpr Index smpl_size = 6890, large_size = 50000;
+
+}  // namespace
+
+BENCHMARK(pose_body<LinearBlend<double>>)->Arg(1000)->Arg(smpl_size)->Arg(large_size);
+BENCHMARK(pose_body<LinearBlend<float>>)->Arg(smpl_size);
+BENCHMARK(pose_body<DualQuaternion<double>>)->Arg(1000)->Arg(smpl_size)->Arg(large_size);
+BENCHMARK(pose_body<DualQuaternion<float>>)->Arg(smpl_size);
+BENCHMARK(naive_pose_body<double>)->Arg(smpl_size);
+BENCHMARK(unpose_body<double>)->Arg(smpl_size);
+BENCHMARK(unpose_body<float>)->Arg(smpl_size);
+BENCHMARK(check_body<LinearBlend<double>>)->Arg(smpl_size);
+BENCHMARK(check_body<DualQuaternion<double>>)->Arg(smpl_size);
+BENCHMARK(blend_rotations<double>)->Arg(smpl_size)->Arg(large_size);
+BENCHMARK(blend_rotations<float>)->Arg(smpl_size);
