@@ -7,7 +7,7 @@
 ///             F0 is the gradient of the shape that d is measured from: the identity for the rest shape, see strain_frame.hpp.
 /// Shapes      d, gradient 3 x vertices; Hessian 3x3 blocks (a, b) = V sum_kl dP_.k/dF_.l g_a[k] g_b[l]
 /// Units       d m, energy J, gradient N, Hessian N/m
-/// Refuses     a mesh that CellMesh::validate() refuses
+/// Refuses     a mesh that CellMesh::validate() refuses, a field of another number of cells
 /// Source      Romero et al. 2020, sec. 4.2; Nolte et al. 2026, eq. (3)
 /// Cost        per cell and Hessian: the material, plus 81 num_nodes + 27 num_nodes (num_nodes + 1) / 2 multiply-adds
 /// Tests       tests/unit/energy/elastic_energy_test.cpp, tests/laws/energy_laws_test.cpp
@@ -20,6 +20,7 @@
 #include <softtissue/energy/rest_operators.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/material/concepts.hpp>
+#include <softtissue/material/field.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 
 #include <type_traits>
@@ -38,9 +39,10 @@ public:
     static_assert(RealScalar<Scalar>, "assembly and solvers need a material over float or double");
 
     ElasticEnergy(const Mesh& mesh, Field field)
-        : field_(std::move(field)), assembly_(mesh.cells, mesh.num_vertices()) {
-        mesh.validate();
-        rest_ = RestOperators<ElementType, Scalar>::at(mesh, mesh.rest_positions);
+        : field_(std::move(field)),
+          assembly_(validated(mesh).cells, mesh.num_vertices()),
+          rest_(RestOperators<ElementType, Scalar>::at(mesh, mesh.rest_positions)) {
+        require_covers(field_, mesh.num_cells());
     }
 
     const Field& field() const { return field_; }
@@ -114,6 +116,11 @@ public:
     }
 
 private:
+    static const Mesh& validated(const Mesh& mesh) {
+        mesh.validate();
+        return mesh;
+    }
+
     /// blocks(a, b) = sum_kl H_(.k)(.l) g_a[k] g_b[l]
     template <class Blocks>
     static void contract_into(const Matrix9<Scalar>& H, const NodePositions<ElementType, Scalar>& g, Blocks& blocks) {

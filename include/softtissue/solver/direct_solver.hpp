@@ -11,6 +11,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/solver/concepts.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
+#include <softtissue/sparse/block_pattern.hpp>
 #include <softtissue/sparse/concepts.hpp>
 
 #include <Eigen/SparseCholesky>
@@ -39,9 +40,10 @@ public:
 
     /// False if H is not positive definite.
     bool factorize(const BlockMatrix<Scalar>& H) {
-        if (analyzed_blocks_ != H.pattern().num_blocks()) {
+        if (!is_analyzed_ || !(analyzed_ == H.pattern())) {
             cholesky_.analyzePattern(H.matrix());
-            analyzed_blocks_ = H.pattern().num_blocks();
+            analyzed_ = H.pattern();
+            is_analyzed_ = true;
         }
         cholesky_.factorize(H.matrix());
         return cholesky_.info() == Eigen::Success;
@@ -52,7 +54,8 @@ public:
 
 private:
     Cholesky cholesky_;
-    Index analyzed_blocks_ = -1;
+    BlockPattern analyzed_;
+    bool is_analyzed_ = false;
 };
 
 }  // namespace softtissue

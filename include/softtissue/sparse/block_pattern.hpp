@@ -53,6 +53,8 @@ public:
         return static_cast<std::int32_t>(place - column.begin());
     }
 
+    friend bool operator==(const BlockPattern&, const BlockPattern&) = default;
+
 private:
     std::vector<Index> offsets_{0};
     std::vector<std::int32_t> rows_;

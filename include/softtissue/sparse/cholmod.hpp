@@ -18,6 +18,11 @@
 namespace softtissue {
 
 /// Satisfies SparseCholesky<double>.
-using CholmodCholesky = Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower>;
+class CholmodCholesky : public Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
+public:
+    CholmodCholesky() {
+        cholmod().print = 0;  // an indefinite matrix is an answer here, not a warning for the console
+    }
+};
 
 }  // namespace softtissue

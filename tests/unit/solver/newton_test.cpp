@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include <softtissue/solver/newton.hpp>
+
+#include <softtissue/solver/direct_solver.hpp>
+#include <softtissue/solver/objective.hpp>
+
+#include <support/separable_energy.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+using namespace softtissue;
+using namespace softtissue_test;
+
+namespace {
+
+/// exp(x) - 2 x: convex, minimum at log 2.
+template <class S>
+struct Exponential {
+    S value(S x) const { return std::exp(x) - S(2) * x; }
+    S first(S x) const { return std::exp(x) - S(2); }
+    S second(S x) const { return std::exp(x); }
+};
+
+/// x^4/4 - x^2/2: minima at -1 and 1, a maximum at 0 between them.
+template <class S>
+struct DoubleWell {
+    S value(S x) const { return x * x * (x * x / S(4) - S(0.5)); }
+    S first(S x) const { return x * (x * x - S(1)); }
+    S second(S x) const { return S(3) * x * x - S(1); }
+};
+
+/// log(1 + x^2): Newton's full step overshoots from |x| > 1/2 on; the Hessian is indefinite beyond 1.
+template <class S>
+struct LongTailed {
+    S value(S x) const { return std::log(S(1) + x * x); }
+    S first(S x) const { return S(2) * x / (S(1) + x * x); }
+    S second(S x) const { return S(2) * (S(1) - x * x) / ((S(1) + x * x) * (S(1) + x * x)); }
+};
+
+/// A gradient of the wrong sign.
+struct WrongGradient : Spring<double> {
+    double first(double x) const { return -x; }
+};
+
+/// A Hessian that no filter makes positive.
+struct NotANumber : Spring<double> {
+    double second(double) const { return std::numeric_limits<double>::quiet_NaN(); }
+};
+
+/// Minimises the sum of `f` over two vertices, the first of them held, from `start`.
+template <class S, class Function>
+struct Solve {
+    SequentialExecutor executor;
+    SeparableEnergy<S, Function> term;
+    std::array<std::int32_t, 1> held{0};
+    Objective<SequentialExecutor, SeparableEnergy<S, Function>> objective{PrescribedVertices(2, held), executor, term};
+    DirectSolver<S> linear_solver;
+    Matrix3X<S> d;
+    std::vector<S> energies, residuals;
+    SolveReport<S> report;
+
+    Solve(Function f, S start, const NewtonOptions<S>& options = {}, int cancel_at = -1)
+        : term{f}, d(Matrix3X<S>::Constant(3, 2, start)) {
+        report = minimise(objective, linear_solver, d, options, [&](const NewtonProgress<S>& progress) {
+            energies.push_back(progress.energy);
+            residuals.push_back(progress.residual);
+            CHECK(progress.iteration + 1 == int(energies.size()));
+            return progress.iteration != cancel_at;
+        });
+    }
+};
+
+template <class S>
+void check_monotone(const std::vector<S>& energies, S final_energy) {
+    for (size_t k = 1; k < energies.size(); ++k) {
+        CHECK(energies[k] <= energies[k - 1]);
+    }
+    CHECK(final_energy <= energies.back());
+}
+
+}  // namespace
+
+TEST_CASE("convergence is quadratic, the prescribed column stays") {
+    Solve<double, Exponential<double>> solve({}, 2.0);
+    CHECK(solve.report.status == SolveStatus::converged);
+    CHECK(solve.report.filtered_iterations == 0);
+    CHECK(solve.d.col(0) == Vector3<double>::Constant(2.0));
+    CHECK((solve.d.col(1) - Vector3<double>::Constant(std::log(2.0))).norm() < 1e-15);
+    // r_next = r^2 / (2 f''^2 ...) -> r^2 / 4 with f'' = f''' = 2
+    int checked = 0;
+    for (size_t k = 0; k + 1 < solve.residuals.size(); ++k) {
+        if (solve.residuals[k] < 0.1 && solve.residuals[k + 1] > 1e-14) {
+            CHECK(solve.residuals[k + 1] == doctest::Approx(solve.residuals[k] * solve.residuals[k] / 4).epsilon(0.1));
+            ++checked;
+        }
+    }
+    CHECK(checked >= 2);
+    check_monotone(solve.energies, solve.report.energy);
+}
+
+TEST_CASE_TEMPLATE("far from a minimum the filtered step descends; the energy never increases", Scalar, float, double) {
+    const NewtonOptions<Scalar> options{.step_tolerance = Scalar(1e-5)};
+    for (const Scalar start : {Scalar(0.3), Scalar(-0.1), Scalar(1.5), Scalar(9)}) {
+        CAPTURE(start);
+        Solve<Scalar, DoubleWell<Scalar>> well({}, start, options);
+        CHECK(well.report.status == SolveStatus::converged);
+        CHECK(std::abs(std::abs(well.d(0, 1)) - Scalar(1)) < Scalar(1e-5));
+        check_monotone(well.energies, well.report.energy);
+        CHECK((well.report.filtered_iterations > 0) == (std::abs(start) < Scalar(0.577)));
+
+        Solve<Scalar, LongTailed<Scalar>> tail({}, start, options);
+        CHECK(tail.report.succeeded());
+        CHECK(std::abs(tail.d(0, 1)) < Scalar(1e-5));
+        check_monotone(tail.energies, tail.report.energy);
+    }
+}
+
+TEST_CASE("each filter finds the minimum; without one an indefinite Hessian ends the solve") {
+    for (const PsdFilter filter : {PsdFilter::absolute, PsdFilter::none}) {
+        Solve<double, DoubleWell<double>> solve({}, 0.3, {.filter = filter});
+        CHECK(solve.report.status ==
+              (filter == PsdFilter::absolute ? SolveStatus::converged : SolveStatus::linear_solver_failed));
+    }
+}
+
+TEST_CASE("a saddle is told from a minimum") {
+    Solve<double, DoubleWell<double>> solve({}, 1e-12);
+    CHECK(solve.report.status == SolveStatus::saddle_point);
+    CHECK_FALSE(solve.report.succeeded());
+}
+
+TEST_CASE("the iteration limit leaves the best point") {
+    Solve<double, LongTailed<double>> solve({}, 9.0, {.max_iterations = 3});
+    CHECK(solve.report.status == SolveStatus::iteration_limit);
+    CHECK(solve.report.iterations == 3);
+    CHECK(solve.objective.energy(solve.d) == solve.report.energy);
+    CHECK(solve.report.energy < solve.energies.front());
+    CHECK(solve.objective.gradient(solve.d).cwiseAbs().maxCoeff() == solve.report.residual);
+}
+
+TEST_CASE("an observer may cancel, at once or later") {
+    Solve<double, LongTailed<double>> at_once({}, 0.4, {}, 0);
+    CHECK(at_once.report.status == SolveStatus::cancelled);
+    CHECK(at_once.report.iterations == 0);
+    CHECK(at_once.d == Matrix3X<double>::Constant(3, 2, 0.4));
+    Solve<double, LongTailed<double>> later({}, 0.4, {}, 2);
+    CHECK(later.report.status == SolveStatus::cancelled);
+    CHECK(later.report.iterations == 2);
+    CHECK(later.report.energy < later.energies.front());
+}
+
+TEST_CASE("a start that is not finite is reported and left alone") {
+    Solve<double, Exponential<double>> overflow({}, 1e3);
+    CHECK(overflow.report.status == SolveStatus::not_finite);
+    CHECK(overflow.report.iterations == 0);
+    CHECK(overflow.d == Matrix3X<double>::Constant(3, 2, 1e3));
+    Solve<double, Spring<double>> nan({}, std::numeric_limits<double>::quiet_NaN());
+    CHECK(nan.report.status == SolveStatus::not_finite);
+}
+
+TEST_CASE("derivatives that lie end in a status, not in a wrong answer") {
+    Solve<double, WrongGradient> wrong(WrongGradient{}, 1.0);
+    CHECK(wrong.report.status == SolveStatus::line_search_stalled);
+    CHECK(wrong.d(0, 1) == 1.0);
+    Solve<double, NotANumber> hessian(NotANumber{}, 1.0);
+    CHECK(hessian.report.status == SolveStatus::linear_solver_failed);
+    CHECK(hessian.d(0, 1) == 1.0);
+}
+
+TEST_CASE("the gradient tolerance stops, at the start if it is met there") {
+    Solve<double, Spring<double>> met({.stiffness = 1, .centre = 1e-4}, 0.0, {.gradient_tolerance = 1e-3});
+    CHECK(met.report.status == SolveStatus::converged);
+    CHECK(met.report.iterations == 0);
+    Solve<double, Exponential<double>> reached({}, 2.0, {.step_tolerance = 0, .gradient_tolerance = 1e-3});
+    CHECK(reached.report.status == SolveStatus::converged);
+    CHECK(reached.report.residual <= 1e-3);
+    CHECK(reached.report.residual > 1e-9);
+}
+
+TEST_CASE_TEMPLATE("without a tolerance the precision decides", Scalar, float, double) {
+    Solve<Scalar, Exponential<Scalar>> solve({}, Scalar(2), {.step_tolerance = Scalar(0)});
+    CHECK(solve.report.succeeded());
+    CHECK(std::abs(solve.d(0, 1) - std::log(Scalar(2))) < 4 * std::numeric_limits<Scalar>::epsilon());
+    // a stiff spring in a sum with a large constant: no decrease of the energy can be seen
+    struct Offset : Exponential<Scalar> {
+        Scalar value(Scalar x) const { return Exponential<Scalar>::value(x) + Scalar(1e3); }
+    };
+    Solve<Scalar, Offset> offset(Offset{}, Scalar(2), {.step_tolerance = Scalar(0)});
+    CHECK(offset.report.succeeded());
+    CHECK(std::abs(offset.d(0, 1) - std::log(Scalar(2))) < 4 * std::numeric_limits<Scalar>::epsilon());
+}
+
+TEST_CASE("nothing free: nothing to do") {
+    const SequentialExecutor executor;
+    SeparableEnergy<double, Spring<double>> term{};
+    const std::array<std::int32_t, 1> held{0};
+    Objective objective(PrescribedVertices(1, held), executor, term);
+    DirectSolver<double> linear_solver;
+    Matrix3X<double> d = Matrix3X<double>::Ones(3, 1);
+    const SolveReport<double> report = minimise(objective, linear_solver, d);
+    CHECK(report.status == SolveStatus::converged);
+    CHECK(report.iterations == 0);
+    CHECK(report.energy == 1.5);
+}
