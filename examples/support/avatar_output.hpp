@@ -226,7 +226,7 @@ private:
     }
 
     void write_contact_sheet(const std::filesystem::path& path) {
-        constexpr int panel_width = 250, panel_height = 400, margin = 60, legend_width = 110, row_gap = 24;
+        constexpr int panel_width = 250, panel_height = 400, margin = 60, legend_width = 120, row_gap = 60;
         const std::vector<const Frame*> selected = selected_frames();
         const View view(-0.5, 0.12);
         Picture picture(margin + panel_width * int(selected.size()) + legend_width, 2 * panel_height + row_gap + 2 * margin);
@@ -245,7 +245,8 @@ private:
             picture.text(caption, x + 0.5 * panel_width, 2 * panel_height + row_gap + margin + 34, 17, 0.5);
         }
         picture.text("skinned", margin, margin - 24, 22);
-        picture.text("with soft tissue, coloured by its displacement from the skinned body", margin, margin + panel_height + 8, 22);
+        picture.text("with soft tissue, coloured by its displacement from the skinned body", margin,
+                     margin + panel_height + row_gap - 18, 22);
         draw_legend(picture, margin + panel_width * int(selected.size()) + 20, margin + panel_height + row_gap + 40,
                     panel_height - 80, top);
         picture.write(path);

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// ctest: --out material_response_test --columns 10
+//
+// A patch of skin on bone under weights from 20 g to 2 kg (Romero et al. 2020, fig. 5): Fung-orthotropic skin against
+// stable neo-Hookean flesh of the same stiffness under small loads.
+#include "support/mesh_picture.hpp"
+
+#include <softtissue/element/prism6.hpp>
+#include <softtissue/energy/dead_load.hpp>
+#include <softtissue/energy/elastic_energy.hpp>
+#include <softtissue/material/field.hpp>
+#include <softtissue/material/fung_orthotropic.hpp>
+#include <softtissue/material/stable_neo_hookean.hpp>
+#include <softtissue/mesh/prism_layers.hpp>
+#include <softtissue/solver/direct_solver.hpp>
+#include <softtissue/solver/newton.hpp>
+#include <softtissue/solver/objective.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+using namespace softtissue;
+
+namespace {
+
+constexpr double side = 0.12, thickness = 0.025, disc_radius = 0.03, gravity = 9.81;
+constexpr double poisson_ratio = 0.2;
+
+/// A square of skin, `columns` boxes along each side, on a bone that does not move; a weight on a disc in its middle.
+struct Patch {
+    PrismLayers layers;
+    CellMesh<Prism6, double> mesh;
+    std::vector<std::int32_t> bone;
+    VectorX<double> share;  // of the weight, per vertex
+
+    explicit Patch(int columns) {
+        const auto column = [columns](int x, int y) { return std::int32_t(x * (columns + 1) + y); };
+        layers = {Index(columns + 1) * (columns + 1), 4};
+        Triangles triangles(3, 2 * columns * columns);
+        Index t = 0;
+        for (int x = 0; x < columns; ++x) {
+            for (int y = 0; y < columns; ++y) {
+                triangles.col(t++) << column(x, y), column(x + 1, y), column(x + 1, y + 1);
+                triangles.col(t++) << column(x, y), column(x + 1, y + 1), column(x, y + 1);
+            }
+        }
+        mesh = {Matrix3X<double>(3, layers.num_vertices()), layers.prisms(triangles)};
+        share.setZero(layers.num_vertices());
+        for (Index c = 0; c < layers.num_columns; ++c) {
+            const double x = side * (double(c / (columns + 1)) / columns - 0.5);
+            const double y = side * (double(c % (columns + 1)) / columns - 0.5);
+            for (Index level = 0; level < layers.num_levels(); ++level) {
+                mesh.rest_positions.col(layers.vertex(c, level)) << x, y, thickness * double(level) / double(layers.num_layers);
+            }
+            bone.push_back(std::int32_t(layers.vertex(c, 0)));
+            share(layers.vertex(c, layers.num_layers)) = std::hypot(x, y) <= disc_radius ? 1.0 : 0.0;
+        }
+        share /= share.sum();
+    }
+
+    /// Mean depth under the disc [m] for each of the `weights` [kg], ascending; every solve starts from the last one.
+    template <class Material>
+    std::vector<double> depths(const Material& material, const std::vector<double>& weights) const {
+        ElasticEnergy<Prism6, UniformField<Material>> elastic(mesh, {material});
+        DeadLoad<double> load(Matrix3X<double>::Zero(3, mesh.num_vertices()));
+        const SequentialExecutor executor;
+        Objective objective(PrescribedVertices(mesh.num_vertices(), bone), executor, elastic, load);
+        DirectSolver<double> linear_solver;
+        Matrix3X<double> d = Matrix3X<double>::Zero(3, mesh.num_vertices());
+        std::vector<double> result;
+        for (const double weight : weights) {
+            Matrix3X<double> forces = Matrix3X<double>::Zero(3, mesh.num_vertices());
+            forces.row(2) = -weight * gravity * share.transpose();
+            load.set_forces(forces);
+            const SolveReport<double> report = minimise(objective, linear_solver, d, {.max_iterations = 200});
+            require(report.succeeded(), "patch under ", weight, " kg: ", to_string(report.status));
+            result.push_back(-d.row(2).dot(share));
+        }
+        return result;
+    }
+};
+
+void plot(const std::filesystem::path& path, const std::vector<double>& weights, const std::vector<double>& fung,
+          const std::vector<double>& flesh) {
+    constexpr double left = 80, top = 60, width = 620, height = 380;
+    examples::Picture picture(760, 520);
+    cairo_t* const context = picture.context();
+    const double deepest = 5.0 * std::ceil(1e3 * std::max(fung.back(), flesh.back()) / 5.0);
+    const auto draw = [&](const std::vector<double>& depths, double red, double green, double blue) {
+        cairo_set_source_rgb(context, red, green, blue);
+        cairo_set_line_width(context, 3.0);
+        cairo_move_to(context, left, top + height);
+        for (size_t i = 0; i < weights.size(); ++i) {
+            cairo_line_to(context, left + width * weights[i] / weights.back(), top + height * (1.0 - 1e3 * depths[i] / deepest));
+        }
+        cairo_stroke(context);
+    };
+    for (int tick = 0; tick <= 4; ++tick) {
+        char label[32];
+        std::snprintf(label, sizeof label, "%.3g", deepest * tick / 4.0);
+        picture.text(label, left - 10, top + height * (1.0 - tick / 4.0) + 5, 15, 1.0);
+        std::snprintf(label, sizeof label, "%.3g", weights.back() * tick / 4.0);
+        picture.text(label, left + width * tick / 4.0, top + height + 24, 15, 0.5);
+        picture.rectangle(left, top + height * (1.0 - tick / 4.0), width, 1, {0.88F, 0.88F, 0.88F});
+    }
+    draw(flesh, 0.20, 0.45, 0.75);
+    draw(fung, 0.80, 0.20, 0.15);
+    picture.text("depth under the weight [mm]", left - 60, top - 24, 17);
+    picture.text("weight [kg]", left + width / 2, top + height + 52, 17, 0.5);
+    picture.rectangle(left + 20, top + 14, 30, 4, {0.20F, 0.45F, 0.75F});
+    picture.text("stable neo-Hookean, same stiffness under small loads", left + 60, top + 22, 15);
+    picture.rectangle(left + 20, top + 40, 30, 4, {0.80F, 0.20F, 0.15F});
+    picture.text("Fung-orthotropic", left + 60, top + 48, 15);
+    picture.write(path);
+}
+
+int run(const std::string& out, int columns) {
+    const Patch patch(columns);
+    Matrix3<double> basis;  // first column: the skin's normal, here z
+    basis << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    const FungOrthotropic<double> fung(
+        {.normal_modulus = 5e3, .tangential_modulus = 10e3, .poisson_ratio = poisson_ratio, .exponent = 4.0}, basis);
+
+    // In the linear range depth is inversely proportional to the modulus: one trial fits it.
+    const std::vector<double> small{1e-4};
+    const double trial_modulus = 5e3;
+    const auto flesh_of = [](double E) { return StableNeoHookean<double>::from_young_poisson({E, poisson_ratio}); };
+    const double fitted_modulus =
+        trial_modulus * patch.depths(flesh_of(trial_modulus), small)[0] / patch.depths(fung, small)[0];
+
+    std::vector<double> weights{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0};
+    const std::vector<double> fung_depths = patch.depths(fung, weights);
+    const std::vector<double> flesh_depths = patch.depths(flesh_of(fitted_modulus), weights);
+    std::printf("skin patch of %.0f x %.0f mm, %.0f mm thick, %d prisms; neo-Hookean E = %.0f Pa fits the small-load stiffness\n\n"
+                "weight [kg]   Fung [mm]   neo-Hookean [mm]\n",
+                1e3 * side, 1e3 * side, 1e3 * thickness, int(patch.mesh.num_cells()), fitted_modulus);
+    for (size_t i = 0; i < weights.size(); ++i) {
+        std::printf("%8.2f  %11.2f  %14.2f\n", weights[i], 1e3 * fung_depths[i], 1e3 * flesh_depths[i]);
+    }
+    std::printf("\nfrom 0.5 to 2 kg, four times the weight: Fung %.2f times as deep, neo-Hookean %.2f times\n",
+                fung_depths.back() / fung_depths[5], flesh_depths.back() / flesh_depths[5]);
+    std::filesystem::create_directories(out);
+    plot(std::filesystem::path(out) / "material_response.png", weights, fung_depths, flesh_depths);
+    std::printf("plot in %s/material_response.png\n", out.c_str());
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string out = "material_response";
+    int columns = 20;
+    CLI::App app("Skin under a weight: Fung-orthotropic against stable neo-Hookean (Romero et al. 2020, fig. 5).");
+    app.add_option("--out", out, "folder for the plot")->capture_default_str();
+    app.add_option("--columns", columns, "boxes along a side of the patch")->check(CLI::Range(4, 60))->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return run(out, columns);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "material_response: %s\n", error.what());
+        return 1;
+    }
+}

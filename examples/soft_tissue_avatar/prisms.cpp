@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include "run_avatar.hpp"
+
+namespace examples {
+
+template void run_avatar<Prism6>(const Settings&, const Scene&, const ThreadExecutor&, AvatarResults&);
+
+}  // namespace examples
