@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -121,9 +122,12 @@ Svd3<Scalar> svd3(const Matrix3<Scalar>& F) {
     result.U.col(0) = u0;
     result.U.col(1) = u1;
     result.U.col(2) = detail::cross(u0, u1);
+    result.sigma.setZero();
     result.sigma(0) = B.col(0).norm();
-    result.sigma(1) = is_rank_one ? Scalar(0) : b1.norm();
-    result.sigma(2) = is_rank_one ? Scalar(0) : result.U.col(2).dot(B.col(2));
+    if (!is_rank_one) {  // rounding must not break the order of equal values
+        result.sigma(1) = std::min(b1.norm(), result.sigma(0));
+        result.sigma(2) = std::clamp(result.U.col(2).dot(B.col(2)), -result.sigma(1), result.sigma(1));
+    }
     result.sigma *= scale;
     result.V = V;
     return result;
