@@ -45,7 +45,8 @@ namespace softtissue {
 struct ElementLawOptions {
     int samples = 50;
     std::uint64_t seed = 1;
-    double noise = 0.1;     ///< of the nodes, relative to the extent of the reference cell; halved until a cell is positive
+    double noise =
+        0.1;  ///< of the nodes, relative to the extent of the reference cell; halved until a cell is positive
     double thinnest = 0.1;  ///< smallest stretch of the reference cell
     /// Allowed round-off, in epsilon of the scalar: chains of some ten operations, amplified by the shape of the cells.
     double round_off = 100;
@@ -118,8 +119,8 @@ private:
         } while (!(E::smallest_jacobian_bound(shape) > Scalar(0)));
         const Vector3<Scalar> stretch = Vector3<Scalar>::NullaryExpr(
             [this] { return Scalar(std::exp(random_.uniform(std::log(options_.thinnest), 0))); });
-        const Matrix3<Scalar> A = random_rotation<Scalar>(random_) * stretch.asDiagonal() *
-                                  random_rotation<Scalar>(random_);
+        const Matrix3<Scalar> A =
+            random_rotation<Scalar>(random_) * stretch.asDiagonal() * random_rotation<Scalar>(random_);
         const Vector3<Scalar> away = extent * random_unit<Vector3<Scalar>>(random_);
         return (A * shape).colwise() + away;
     }
@@ -275,9 +276,9 @@ private:
 
 /// The laws of element E, on cells like `reference`.
 template <class E, RealScalar Scalar>
-    requires Element<E, Scalar>
-LawReport check_element_laws(const NodePositions<E, Scalar>& reference, const ElementLawOptions& options = {}) {
-    return detail::ElementLawSuite<E, Scalar>(reference, options).report();
-}
+    requires Element<E, Scalar> LawReport check_element_laws(const NodePositions<E, Scalar>& reference,
+                                                             const ElementLawOptions& options = {}) {
+        return detail::ElementLawSuite<E, Scalar>(reference, options).report();
+    }
 
 }  // namespace softtissue
