@@ -29,7 +29,8 @@ TEST_CASE_TEMPLATE("three simple roots are found in order", Real, float, double)
         expected[1] = expected[0] + Real(random.uniform(0.5, 2));
         expected[2] = expected[1] + Real(random.uniform(0.5, 2));
         const Real scale = Real(random.uniform(-2, 2));
-        const CubicRoots<Real> roots = cubic_roots(with_roots(scale, expected[0], expected[1], expected[2]), Real(-9), Real(9));
+        const CubicRoots<Real> roots =
+            cubic_roots(with_roots(scale, expected[0], expected[1], expected[2]), Real(-9), Real(9));
         REQUIRE(roots.count == 3);
         for (std::size_t i = 0; i < 3; ++i) {
             // Coefficients are rounded: at most 64 scale epsilon, over a slope of at least 0.25 scale.
