@@ -191,10 +191,10 @@ private:
         return {within, x - within};
     }
 
-    /// dsigma/dE = 2 B (tau o Eb) B^T, symmetric.
+    /// dsigma/dE = 2 B (tau o Eb) B^T, symmetric to the last bit.
     Matrix3<Scalar> dsigma_dstrain(const Matrix3<Scalar>& Eb) const {
-        const Matrix3<Scalar> weighted = Scalar(2) * coefficients_.tau.cwiseProduct(Eb);
-        return basis_ * weighted * basis_.transpose();
+        const Matrix3<Scalar> half = basis_ * coefficients_.tau.cwiseProduct(Eb) * basis_.transpose();
+        return half + half.transpose();
     }
 
     static constexpr int num_modes = 8;
