@@ -54,12 +54,12 @@ public:
           shape_directions_(body.shape_directions),
           pose_directions_(body.pose_directions) {
         body.validate("VolumetricSmpl");
-        joint_template_ = (body.joint_regressor * template_.transpose()).transpose();
+        joint_template_ = regressed(body.joint_regressor, template_);
         joint_directions_.resize(3 * num_joints(), num_shapes());
         for (Index s = 0; s < num_shapes(); ++s) {
             const Eigen::Map<const Matrix3X<S>> direction(shape_directions_.col(s).data(), 3, num_vertices());
             Eigen::Map<Matrix3X<S>>(joint_directions_.col(s).data(), 3, num_joints()) =
-                (body.joint_regressor * direction.transpose()).transpose();
+                regressed(body.joint_regressor, direction);
         }
         set_shape(VectorX<S>::Zero(num_shapes()));
     }
@@ -149,12 +149,24 @@ public:
     }
 
 private:
+    /// One column per joint: the regressor's combination of the columns of `vertices`.
+    static Matrix3X<S> regressed(const SparseMatrix& regressor, ConstRef<Matrix3X<S>> vertices) {
+        Matrix3X<S> joints = Matrix3X<S>::Zero(3, regressor.rows());
+        for (Index j = 0; j < regressor.rows(); ++j) {
+            for (typename SparseMatrix::InnerIterator entry(regressor, j); entry; ++entry) {
+                joints.col(j) += entry.value() * vertices.col(entry.col());
+            }
+        }
+        return joints;
+    }
+
     static Matrix3X<S> shaped(const Matrix3X<S>& mean, const MatrixX<S>& directions, const VectorX<S>& betas) {
         require(betas.size() <= directions.cols(), "shape has ", betas.size(), " coefficients, expected at most ",
                 directions.cols());
         Matrix3X<S> result = mean;
-        Eigen::Map<VectorX<S>>(result.data(), result.size()).noalias() +=
-            directions.leftCols(betas.size()) * betas;
+        for (Index s = 0; s < betas.size(); ++s) {
+            result += betas(s) * Eigen::Map<const Matrix3X<S>>(directions.col(s).data(), 3, mean.cols());
+        }
         return result;
     }
 

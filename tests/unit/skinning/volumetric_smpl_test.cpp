@@ -26,30 +26,42 @@ VectorX<S> two_betas() {
     return Eigen::Matrix<S, 2, 1>(S(0.7), S(-1.2));
 }
 
+/// The regressor's joints, 3 x joints.
+template <class S>
+Matrix3X<S> textbook_joints(const SmplBody<S>& body, const Matrix3X<S>& vertices) {
+    const MatrixX<S> regressor = body.joint_regressor.toDense();
+    Matrix3X<S> joints = Matrix3X<S>::Zero(3, body.num_joints());
+    for (Index j = 0; j < joints.cols(); ++j) {
+        for (Index v = 0; v < vertices.cols(); ++v) {
+            joints.col(j) += regressor(j, v) * vertices.col(v);
+        }
+    }
+    return joints;
+}
+
 /// SMPL, written down from its definition with dense arrays.
 template <class S>
 Matrix3X<S> textbook_lbs(const SmplBody<S>& body, const VectorX<S>& betas, const Pose<S>& pose) {
     const Index n = body.num_vertices(), joints = body.num_joints();
-    VectorX<S> shaped = Eigen::Map<const VectorX<S>>(body.template_vertices.data(), 3 * n);
-    shaped += body.shape_directions * betas;
-    const Matrix3X<S> rest = Eigen::Map<const Matrix3X<S>>(shaped.data(), 3, n);
-    const Matrix3X<S> rest_joints = rest * body.joint_regressor.toDense().transpose();
-    VectorX<S> features(9 * (joints - 1));
+    const MatrixX<S> pose_directions = body.pose_directions.toDense(), weights = body.weights.dense();
+    Matrix3X<S> rest = body.template_vertices;
+    for (Index s = 0; s < betas.size(); ++s) {
+        rest += betas(s) * body.shape_directions.col(s).reshaped(3, n);
+    }
+    Matrix3X<S> corrected = rest;
     for (Index j = 1; j < joints; ++j) {
         const Matrix3<S> R = rotation_matrix_from_rotation_vector<S>(pose.rotation_vectors.col(j));
         for (int a = 0; a < 3; ++a) {
             for (int b = 0; b < 3; ++b) {
-                features(9 * (j - 1) + 3 * a + b) = R(a, b) - S(a == b);
+                corrected += (R(a, b) - S(a == b)) * pose_directions.col(9 * (j - 1) + 3 * a + b).reshaped(3, n);
             }
         }
     }
-    const VectorX<S> corrected = shaped + body.pose_directions.toDense() * features;
-    const std::vector<AffineTransform<S>> transforms = joint_transforms(body.tree, rest_joints, pose);
-    const MatrixX<S> weights = body.weights.dense();
+    const auto transforms = joint_transforms(body.tree, textbook_joints(body, rest), pose);
     Matrix3X<S> result = Matrix3X<S>::Zero(3, n);
     for (Index v = 0; v < n; ++v) {
         for (Index j = 0; j < joints; ++j) {
-            result.col(v) += weights(v, j) * transforms[size_t(j)](corrected.template segment<3>(3 * v));
+            result.col(v) += weights(v, j) * transforms[size_t(j)](corrected.col(v));
         }
     }
     return result;
@@ -99,8 +111,7 @@ TEST_CASE_TEMPLATE("shape: linear, joints follow the surface, missing coefficien
     CHECK(model.rest_vertices() == body.template_vertices);
     CHECK(model.shape() == VectorX<S>::Zero(2));
     const Matrix3X<S> rest = model.rest_shape(two_betas<S>());
-    const Matrix3X<S> joints = rest * body.joint_regressor.toDense().transpose();
-    CHECK(largest_distance(model.joints(two_betas<S>()), joints) <= 10 * std::numeric_limits<S>::epsilon());
+    CHECK(largest_distance(model.joints(two_betas<S>()), textbook_joints(body, rest)) <= 10 * std::numeric_limits<S>::epsilon());
     const VectorX<S> one = VectorX<S>::Constant(1, S(2)), padded = Eigen::Matrix<S, 2, 1>(2, 0);
     CHECK(model.rest_shape(one) == model.rest_shape(padded));
     model.set_shape(two_betas<S>());
@@ -124,7 +135,8 @@ TEST_CASE("pose blend shapes: one rotation entry drives its own column") {
     CHECK(model.pose_offsets(pose).isZero(0));
 }
 
-TEST_CASE_TEMPLATE("without correctives the offsets vanish; dual quaternions blend rigidly", S, float, double) {
+TEST_CASE("without correctives the offsets vanish; dual quaternions blend rigidly") {
+    using S = double;
     const SmplBody<S> body = arm_body<S>();
     const Pose<S> pose = random_pose<S>(4, 3);
     const VolumetricSmpl<S> plain(body, {}, {.pose_correctives = false});
@@ -157,7 +169,7 @@ TEST_CASE("posing again gives the same bits, in the same storage, on any number 
 
 TEST_CASE_TEMPLATE("carried into a volume: matched vertices move like the skin, bit for bit", S, float, double) {
     const SmplBody<S> body = arm_body<S>();
-    VolumetricSmpl<S, DualQuaternion<S>> skin(body);
+    VolumetricSmpl skin(body);
     skin.set_shape(two_betas<S>());
     std::vector<VertexMatch> matches;
     for (std::int32_t v = 0; v < 6; ++v) {
