@@ -156,9 +156,10 @@ void refuse_reduction(const SoftLayer<S>& layer, const TriangleMesh& mesh, const
                       const VectorX<S>& wanted, const GuardedThickness<S>& guarded) {
     for (Index t = 0; t < mesh.num_triangles(); ++t) {
         const S jacobian = relative_jacobian<S>(columns, mesh.triangles().col(t), wanted);
-        require(jacobian >= layer.options.validity_margin, "soft layer: the thickness makes the cells below body triangle ",
-                layer.region.body_triangles[size_t(t)], " invalid (relative Jacobian ", jacobian, ", expected >= ",
-                layer.options.validity_margin, ")");
+        require(jacobian >= layer.options.validity_margin,
+                "soft layer: the thickness makes the cells below body triangle ",
+                layer.region.body_triangles[size_t(t)], " invalid (relative Jacobian ", jacobian,
+                ", expected >= ", layer.options.validity_margin, ")");
     }
     for (Index v = 0; v < wanted.size(); ++v) {
         require(guarded.thickness(v) >= wanted(v), "soft layer: with the thickness ", wanted(v), " of body vertex ",
@@ -211,9 +212,9 @@ SoftLayer<S> with_thickness(SoftLayer<S> layer, const std::type_identity_t<Vecto
         require(std::isfinite(thickness(v)), "soft layer: thickness of body vertex ",
                 layer.region.body_vertices[size_t(v)], " is not finite");
         bounded(v) = std::clamp(thickness(v), layer.options.minimum_thickness, largest(v));
-        require(policy == ThicknessPolicy::reduce || bounded(v) == thickness(v), "soft layer: thickness of body vertex ",
-                layer.region.body_vertices[size_t(v)], " = ", thickness(v), ", expected ",
-                layer.options.minimum_thickness, " to ", largest(v));
+        require(policy == ThicknessPolicy::reduce || bounded(v) == thickness(v),
+                "soft layer: thickness of body vertex ", layer.region.body_vertices[size_t(v)], " = ", thickness(v),
+                ", expected ", layer.options.minimum_thickness, " to ", largest(v));
         layer.report.vertices_clamped += bounded(v) != thickness(v) ? 1 : 0;
     }
     const VectorX<S> wanted = detail::thinned_towards_cuts(layer, bounded);

@@ -32,7 +32,9 @@ namespace softtissue {
 using JointGroups = std::vector<std::vector<std::int32_t>>;
 
 /// Head; ankles and feet; wrists and hands, in SMPL's order of 24 joints.
-inline JointGroups smpl_extremities() { return {{15}, {7, 8, 10, 11}, {20, 21, 22, 23}}; }
+inline JointGroups smpl_extremities() {
+    return {{15}, {7, 8, 10, 11}, {20, 21, 22, 23}};
+}
 
 struct RegionOptions {
     std::optional<JointGroups> extremities = {};
@@ -184,7 +186,8 @@ SimulatedRegion<S> make_simulated_region(const Matrix3X<S>& positions, const Tri
             }
         }
     }
-    require(!region.body_triangles.empty(), "simulated region: no triangle left, expected skin outside the extremities");
+    require(!region.body_triangles.empty(),
+            "simulated region: no triangle left, expected skin outside the extremities");
     for (size_t v = 0; v < region.region_vertices.size(); ++v) {
         if (region.region_vertices[v] == 0) {
             region.region_vertices[v] = static_cast<std::int32_t>(region.body_vertices.size());

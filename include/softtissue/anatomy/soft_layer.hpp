@@ -74,11 +74,11 @@ struct SoftLayer {
     using Scalar = S;
 
     SimulatedRegion<S> region;
-    PrismLayers layers;             // num_columns = region vertices
-    Matrix3X<S> skin_positions;     // 3 x region vertices: t
-    Matrix3X<S> directions;         // 3 x region vertices: u, inwards, unit
-    VectorX<S> skeleton_distance;   // |p - t| per region vertex
-    VectorX<S> thickness;           // h, as built
+    PrismLayers layers;            // num_columns = region vertices
+    Matrix3X<S> skin_positions;    // 3 x region vertices: t
+    Matrix3X<S> directions;        // 3 x region vertices: u, inwards, unit
+    VectorX<S> skeleton_distance;  // |p - t| per region vertex
+    VectorX<S> thickness;          // h, as built
     CellMesh<Prism6, S> mesh;
     std::vector<std::int32_t> prescribed_vertices;  // of mesh, ascending
     SoftLayerOptions<S> options;

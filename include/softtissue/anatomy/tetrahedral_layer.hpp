@@ -40,10 +40,9 @@ struct Tetrahedralisation {
 };
 
 template <class F, class S>
-concept Tetrahedraliser =
-    requires(F&& tetrahedralise, const Matrix3X<S>& positions, const Triangles& triangles) {
-        { tetrahedralise(positions, triangles) } -> std::same_as<Tetrahedralisation<S>>;
-    };
+concept Tetrahedraliser = requires(F&& tetrahedralise, const Matrix3X<S>& positions, const Triangles& triangles) {
+    { tetrahedralise(positions, triangles) } -> std::same_as<Tetrahedralisation<S>>;
+};
 
 template <RealScalar S>
 struct LayerBoundary {
@@ -144,8 +143,9 @@ inline void require_same_boundary(const Connectivity<4>& tets, const Triangles& 
     }
     const bool is_missing = f == found.end() || (w != wanted.end() && *w < *f);
     const SortedTriangle& face = is_missing ? *w : *f;
-    throw_invalid_input("tetrahedral layer: ", is_missing ? "boundary triangle (" : "outer face (", face[0], ", ", face[1],
-                        ", ", face[2], is_missing ? ") is no outer face of the tets" : ") is no boundary triangle",
+    throw_invalid_input("tetrahedral layer: ", is_missing ? "boundary triangle (" : "outer face (", face[0], ", ",
+                        face[1], ", ", face[2],
+                        is_missing ? ") is no outer face of the tets" : ") is no boundary triangle",
                         ", expected the boundary's topology retained");
 }
 

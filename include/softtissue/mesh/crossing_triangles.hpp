@@ -105,7 +105,8 @@ std::vector<std::pair<std::int32_t, std::int32_t>> crossing_triangles(const Matr
         upper.col(t) = corners[size_t(t)].rowwise().maxCoeff();
     }
     const auto may_cross = [&](std::int32_t s, std::int32_t t) {
-        if ((lower.col(s).array() > upper.col(t).array()).any() || (lower.col(t).array() > upper.col(s).array()).any()) {
+        if ((lower.col(s).array() > upper.col(t).array()).any() ||
+            (lower.col(t).array() > upper.col(s).array()).any()) {
             return false;
         }
         for (int k = 0; k < 3; ++k) {

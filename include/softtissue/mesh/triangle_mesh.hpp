@@ -64,9 +64,7 @@ public:
     }
 
     /// Vertices - edges + triangles; 2 for a sphere.
-    Index euler_characteristic() const {
-        return num_vertices() - static_cast<Index>(edges_.size()) + num_triangles();
-    }
+    Index euler_characteristic() const { return num_vertices() - static_cast<Index>(edges_.size()) + num_triangles(); }
 
     /// Each loop starts at its smallest vertex and runs with its triangles (the surface on the left, seen from outside);
     /// loops ascend by their first vertex.
@@ -125,11 +123,12 @@ private:
             return std::array{x.low, x.high, x.triangle} < std::array{y.low, y.high, y.triangle};
         });
         for (const HalfEdge& h : half_edges) {
-            const bool is_second = !edges_.empty() && std::minmax({edges_.back().vertices[0], edges_.back().vertices[1]}) ==
-                                                          std::pair(h.low, h.high);
+            const bool is_second =
+                !edges_.empty() &&
+                std::minmax({edges_.back().vertices[0], edges_.back().vertices[1]}) == std::pair(h.low, h.high);
             if (!is_second) {
-                edges_.push_back({h.ascending ? std::array{h.low, h.high} : std::array{h.high, h.low},
-                                  {h.triangle, no_triangle}});
+                edges_.push_back(
+                    {h.ascending ? std::array{h.low, h.high} : std::array{h.high, h.low}, {h.triangle, no_triangle}});
                 continue;
             }
             Edge& edge = edges_.back();

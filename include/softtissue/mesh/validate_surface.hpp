@@ -81,8 +81,7 @@ void validate_closed_surface(const Matrix3X<S>& positions, const Triangles& tria
                 areas(t), ", expected > 0");
     }
     const S volume = enclosed_volume(positions, triangles);
-    require(volume > S(0), source, ": encloses a volume of ", volume,
-            ", expected > 0 (the triangles face inwards)");
+    require(volume > S(0), source, ": encloses a volume of ", volume, ", expected > 0 (the triangles face inwards)");
 }
 
 }  // namespace softtissue

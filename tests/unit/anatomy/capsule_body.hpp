@@ -19,8 +19,8 @@ struct CapsuleBody {
     static constexpr std::int32_t num_rings = 31;
     static constexpr std::int32_t num_sectors = 16;
 
-    Matrix3X<S> positions{3, num_rings * num_sectors + 2};
-    Triangles faces{3, 2 * num_rings * num_sectors};
+    Matrix3X<S> positions{3, num_rings* num_sectors + 2};
+    Triangles faces{3, 2 * num_rings* num_sectors};
     SkinningWeights<S> weights;
     KinematicTree tree{{KinematicTree::no_parent, 0, 1}};
     Matrix3X<S> joints{3, 3};

@@ -3,6 +3,7 @@
 
 #include <softtissue/io/smpl_file.hpp>
 #include <softtissue/mesh/split_prisms.hpp>
+#include <softtissue/model/procedural_human.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include "capsule_body.hpp"
@@ -129,9 +130,8 @@ TEST_CASE_TEMPLATE("a thickness given by the user is built, bounded, or refused"
 
 TEST_CASE("a thickness that would invert cells is reduced, or refused with the triangle's name") {
     CapsuleBody<double> body;
-    // One vertex half way drawn in to 1 cm beside the axis, sideways: around it the layer has little room.
+    // One vertex drawn in half way to the axis: around it the layer has little room.
     const std::int32_t dent = body.vertex(body.num_rings / 2, 0);
-    body.positions.col(dent) *= 1.0;
     body.positions(0, dent) = 0.045;
     const SoftLayer<double> layer = make(body);
     check_valid(layer);
@@ -249,6 +249,23 @@ TEST_CASE_TEMPLATE("real bodies: no inverted prism, no inverted tet, no crossing
         CHECK(layer.report.thickness_min > S(0.001));
         CHECK(layer.report.thickness_mean > S(0.020));
         CHECK(layer.report.vertices_reduced < layer.num_columns() / 15);
+    }
+}
+
+TEST_CASE("the embedded human, in its template and in other shapes") {
+    SmplBody<double> body = procedural_human<double>();
+    const Matrix3X<double> rest = body.template_vertices;
+    for (const double beta : {0.0, 2.0, -2.0}) {
+        CAPTURE(beta);
+        body.template_vertices = rest;
+        body.template_vertices.reshaped() += body.shape_directions * VectorX<double>::Constant(body.num_shapes(), beta);
+        const SoftLayer<double> layer = make_soft_layer(body);
+        check_valid(layer);
+        CHECK(layer.region.loops.size() == 5);
+        CHECK(layer.report.crossings_left == 0);
+        CHECK(layer.report.vertices_without_cone == 0);
+        CHECK(layer.report.thickness_min == layer.options.minimum_thickness);
+        CHECK(layer.report.thickness_mean > 0.02);
     }
 }
 

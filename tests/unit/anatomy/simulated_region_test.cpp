@@ -43,7 +43,8 @@ TEST_CASE_TEMPLATE("the region keeps what is outside the extremities, numbered a
         }
     }
     // Rings are 0.03 m apart: the middle one is half way between the cuts.
-    const S half = (region.gather(body.positions).row(1).maxCoeff() - region.gather(body.positions).row(1).minCoeff()) / S(2);
+    const S half =
+        (region.gather(body.positions).row(1).maxCoeff() - region.gather(body.positions).row(1).minCoeff()) / S(2);
     CHECK(region.cut_distance.maxCoeff() == doctest::Approx(double(half)).epsilon(1e-5));
 }
 
@@ -103,10 +104,11 @@ TEST_CASE("what cannot be cut is refused") {
     const auto make = [&](const RegionOptions& options) {
         return make_simulated_region(body.positions, mesh, body.weights, options).num_vertices();
     };
-    CHECK_THROWS_WITH_AS(make({}),
-                         "simulated region: the body has 3 joints, expected SMPL's 24, or the joints of its extremities "
-                         "named in the options",
-                         InvalidInput);
+    CHECK_THROWS_WITH_AS(
+        make({}),
+        "simulated region: the body has 3 joints, expected SMPL's 24, or the joints of its extremities "
+        "named in the options",
+        InvalidInput);
     CHECK_THROWS_WITH_AS(make({.extremities = JointGroups{{1, 3}}}),
                          "simulated region: extremity joint 3, expected 0 to 2", InvalidInput);
     CHECK_THROWS_WITH_AS(make({.extremities = JointGroups{}, .excluded_vertices = {-1}}),

@@ -37,7 +37,8 @@ TEST_CASE("no sampled point of the bones is closer") {
         for (Index j = 1; j < 5; ++j) {
             for (int k = 0; k <= 1000; ++k) {
                 const double t = k / 1000.0;
-                smallest = std::min(smallest, (joints.col(tree.parent(j)) * (1 - t) + joints.col(j) * t - point).norm());
+                smallest =
+                    std::min(smallest, (joints.col(tree.parent(j)) * (1 - t) + joints.col(j) * t - point).norm());
             }
         }
         const double distance = (bones.closest_point(point) - point).norm();

@@ -136,15 +136,18 @@ TEST_CASE("a mesher that does not keep the boundary is refused") {
     CHECK(message([](auto& r) { r.positions = r.positions.leftCols(9).eval(); }).find("returned 9 vertices") !=
           std::string::npos);
     CHECK(message([](auto& r) { r.tets.col(3).reverseInPlace(); }) == "accepted");  // an even permutation
-    CHECK(message([](auto& r) { std::swap(r.tets(0, 3), r.tets(1, 3)); }).find("mesh: cell 3 has a rest Jacobian bound") ==
-          0);
-    CHECK(message([](auto& r) { r.tets = r.tets.leftCols(r.tets.cols() - 1).eval(); })
-              .find("expected the boundary's topology retained") != std::string::npos);
+    CHECK(message([](auto& r) {
+              std::swap(r.tets(0, 3), r.tets(1, 3));
+          }).find("mesh: cell 3 has a rest Jacobian bound") == 0);
+    CHECK(message([](auto& r) {
+              r.tets = r.tets.leftCols(r.tets.cols() - 1).eval();
+          }).find("expected the boundary's topology retained") != std::string::npos);
 }
 
 #ifdef SOFTTISSUE_HAS_TETGEN
 TEST_CASE("TetGen fills the layer of a real body") {
-    const std::filesystem::path path = std::filesystem::path(SOFTTISSUE_SHARED_DIR) / "data" / "body" / "body_small.npz";
+    const std::filesystem::path path =
+        std::filesystem::path(SOFTTISSUE_SHARED_DIR) / "data" / "body" / "body_small.npz";
     if (!std::filesystem::exists(path)) {
         MESSAGE("skipped: no file ", path.string());
         return;

@@ -13,10 +13,10 @@ namespace {
 /// A strip of quads, two triangles each, folded like a valley: two slopes that meet at x = 0, skin facing up.
 template <class S>
 struct Valley {
-    static constexpr std::int32_t along = 21;   // vertices in x, from -1 to 1
-    static constexpr std::int32_t across = 5;   // in y
-    Matrix3X<S> skin{3, along * across};
-    Matrix3X<S> directions{3, along * across};
+    static constexpr std::int32_t along = 21;  // vertices in x, from -1 to 1
+    static constexpr std::int32_t across = 5;  // in y
+    Matrix3X<S> skin{3, along* across};
+    Matrix3X<S> directions{3, along* across};
     Triangles triangles{3, 2 * (along - 1) * (across - 1)};
 
     /// Directions point down and, on the slopes, `squeeze` towards x = 0.

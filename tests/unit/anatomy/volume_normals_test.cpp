@@ -36,7 +36,8 @@ TEST_CASE_TEMPLATE("inside a capsule the normals stay radial and agree with the 
     for (size_t c = 0; c < of_tets.size(); ++c) {
         CHECK(of_tets[c].col(0).dot(of_prisms[c / 3].col(0)) > S(0.98));
     }
-    CHECK_THROWS_WITH_AS(interpolate_normals<S>(tets, skin, skin_normals.leftCols(2)),
-                         ("normals: 2 for " + std::to_string(skin.size()) + " skin vertices, expected equal numbers").c_str(),
-                         InvalidInput);
+    CHECK_THROWS_WITH_AS(
+        interpolate_normals<S>(tets, skin, skin_normals.leftCols(2)),
+        ("normals: 2 for " + std::to_string(skin.size()) + " skin vertices, expected equal numbers").c_str(),
+        InvalidInput);
 }

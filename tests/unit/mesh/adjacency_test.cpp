@@ -9,7 +9,9 @@ using namespace softtissue;
 
 TEST_CASE("rows keep the order of the pairs, empty rows included") {
     const Adjacency adjacency(4, {{2, 7}, {0, 5}, {2, 3}, {0, 9}, {2, 8}});
-    const auto row = [&](Index i) { return std::vector<std::int32_t>(adjacency.row(i).begin(), adjacency.row(i).end()); };
+    const auto row = [&](Index i) {
+        return std::vector<std::int32_t>(adjacency.row(i).begin(), adjacency.row(i).end());
+    };
     CHECK(adjacency.num_rows() == 4);
     CHECK(row(0) == std::vector<std::int32_t>{5, 9});
     CHECK(row(1).empty());

@@ -31,5 +31,6 @@ TEST_CASE_TEMPLATE("distances follow the edges and stay infinite on other pieces
     CHECK(nearest(2) == S(1));
     CHECK(nearest(1) == S(1));
     CHECK(nearest(5) == S(1));
-    CHECK(edge_distances<S>(mesh, positions, std::vector<std::int32_t>{}).minCoeff() == std::numeric_limits<S>::infinity());
+    CHECK(edge_distances<S>(mesh, positions, std::vector<std::int32_t>{}).minCoeff() ==
+          std::numeric_limits<S>::infinity());
 }

@@ -17,7 +17,9 @@ Triangles tetrahedron() {
     return triangles;
 }
 
-std::vector<std::int32_t> list(std::span<const std::int32_t> row) { return {row.begin(), row.end()}; }
+std::vector<std::int32_t> list(std::span<const std::int32_t> row) {
+    return {row.begin(), row.end()};
+}
 
 }  // namespace
 
@@ -68,7 +70,8 @@ TEST_CASE("connectivity that is no oriented surface is refused") {
     CHECK_THROWS_WITH_AS(TriangleMesh(triangles, 4, "hand.obj"), "hand.obj: triangle 2 uses vertex 4, expected 0 to 3",
                          InvalidInput);
     triangles(1, 2) = -1;
-    CHECK_THROWS_WITH_AS(TriangleMesh(triangles, 4), "surface: triangle 2 uses vertex -1, expected 0 to 3", InvalidInput);
+    CHECK_THROWS_WITH_AS(TriangleMesh(triangles, 4), "surface: triangle 2 uses vertex -1, expected 0 to 3",
+                         InvalidInput);
     triangles(1, 2) = 2;
     CHECK_THROWS_WITH_AS(TriangleMesh(triangles, 4), "surface: triangle 2 uses vertex 2 twice", InvalidInput);
 
@@ -81,8 +84,8 @@ TEST_CASE("connectivity that is no oriented surface is refused") {
 
     Triangles fan(3, 3);
     fan << 0, 1, 0, 1, 0, 1, 2, 3, 4;
-    CHECK_THROWS_WITH_AS(TriangleMesh(fan, 5), "surface: edge (0, 1) belongs to triangles 0, 1 and 2, expected at most two",
-                         InvalidInput);
+    CHECK_THROWS_WITH_AS(TriangleMesh(fan, 5),
+                         "surface: edge (0, 1) belongs to triangles 0, 1 and 2, expected at most two", InvalidInput);
 }
 
 TEST_CASE("a boundary that passes a vertex twice has no simple loops") {

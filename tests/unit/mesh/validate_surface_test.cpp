@@ -65,7 +65,8 @@ TEST_CASE_TEMPLATE("each defect is refused by name", S, float, double) {
     SUBCASE("open edge") {
         surface.triangles = surface.triangles.leftCols(7).eval();
         CHECK_THROWS_WITH_AS(surface.validate(),
-                             "body.obj: edge (3, 0) belongs to triangle 3 only, expected a closed surface", InvalidInput);
+                             "body.obj: edge (3, 0) belongs to triangle 3 only, expected a closed surface",
+                             InvalidInput);
     }
     SUBCASE("inconsistent orientation") {
         surface.triangles.col(0).reverseInPlace();
