@@ -34,23 +34,24 @@ template <class T, int N>
 struct Dual {
     using Real = typename ScalarTraits<T>::Real;
 
-    T value{};
-    std::array<T, std::size_t(N)> derivative{};
+    T value;
+    std::array<T, std::size_t(N)> derivative;
 
-    constexpr Dual() = default;
+    /// Uninitialised like a plain number: zeros that every operation overwrites would cost as much as the operation.
+    Dual() = default;
 
     /// A constant; implicit, so that `S x = 1` and `2 * F` read as for a plain number.
     template <PlainNumber A>
-    constexpr Dual(A constant) : value(static_cast<Real>(constant)) {}
+    constexpr Dual(A constant) : value(static_cast<Real>(constant)), derivative{} {}
 
     /// A constant of the inner level of a nested dual.
-    constexpr Dual(const T& constant) requires(!PlainNumber<T>) : value(constant) {}
+    constexpr Dual(const T& constant) requires(!PlainNumber<T>) : value(constant), derivative{} {}
 
     constexpr Dual(const T& v, const std::array<T, std::size_t(N)>& d) : value(v), derivative(d) {}
 
     /// The i-th independent variable: derivative 1 by itself, 0 by all others.
     static constexpr Dual variable(const T& value, int i) {
-        Dual x;
+        Dual x{};
         x.value = value;
         x.derivative[std::size_t(i)] = T(Real(1));
         return x;
@@ -285,7 +286,7 @@ struct NumTraits<softtissue::Dual<T, N>> : NumTraits<softtissue::RealOf<softtiss
         IsComplex = 0,
         IsInteger = 0,
         IsSigned = 1,
-        RequireInitialization = 1,
+        RequireInitialization = 0,
         ReadCost = (N + 1) * NumTraits<T>::ReadCost,
         AddCost = (N + 1) * NumTraits<T>::AddCost,
         MulCost = (N + 1) * NumTraits<T>::MulCost + 2 * N * NumTraits<T>::AddCost

@@ -21,7 +21,9 @@ using namespace softtissue;
 static_assert(FieldScalar<Dual<double, 9>> && FieldScalar<Dual<float, 1>> && FieldScalar<Dual<Dual<double, 9>, 9>>);
 static_assert(!RealScalar<Dual<double, 9>>);
 static_assert(std::same_as<RealOf<Dual<Dual<float, 2>, 3>>, float>);
-static_assert(std::is_trivially_copyable_v<Dual<double, 9>>);
+static_assert(std::is_trivially_copyable_v<Dual<double, 9>> && std::is_trivial_v<Dual<Dual<double, 9>, 9>>);
+static_assert(Dual<double, 2>{} == 0 && Dual<double, 2>{}.derivative[1] == 0, "braces give zero");
+static_assert((Dual<double, 1>::variable(3, 0) * Dual<double, 1>::variable(3, 0)).derivative[0] == 6);
 static_assert(std::convertible_to<int, Dual<float, 2>> && std::convertible_to<double, Dual<Dual<double, 2>, 2>>);
 static_assert(!std::convertible_to<Dual<double, 2>, double>, "derivatives must not get lost silently");
 
