@@ -39,7 +39,8 @@ TEST_CASE_TEMPLATE("the Hessian of the determinant is its exact second differenc
     // det is linear in each entry, so mixed differences with unit steps are exact for small integers.
     RandomGenerator random(2);
     for (int repeat = 0; repeat < 5; ++repeat) {
-        const Matrix3<Scalar> F = Matrix3<Scalar>::NullaryExpr([&random] { return Scalar(random.index(9)) - Scalar(4); });
+        const Matrix3<Scalar> F =
+            Matrix3<Scalar>::NullaryExpr([&random] { return Scalar(random.index(9)) - Scalar(4); });
         Matrix9<Scalar> H = Matrix9<Scalar>::Ones();
         add_determinant_hessian(F, Scalar(2), H);
         for (int a = 0; a < 9; ++a) {
