@@ -61,7 +61,7 @@ TEST_CASE_TEMPLATE("quaternion of a rotation vector: every component to rounding
         const Vector3<long double> exact_r = r.template cast<long double>();
         const long double a = std::sqrt(exact_r.dot(exact_r));
         const long double scale = a == 0 ? 0.5L : std::sin(a / 2) / a;
-        const Quaternion<S> q = quaternion_from_rotation_vector(r);
+        const Quaternion<long double> q = quaternion_from_rotation_vector(r).template cast<long double>();
         // an angle rounded to S is off by |r| eps/2, and so is its sine
         const long double tolerance = (2 + std::abs(a)) * wide_epsilon<S>;
         CHECK(std::abs(q(0) - std::cos(a / 2)) <= tolerance);
@@ -88,10 +88,11 @@ TEST_CASE_TEMPLATE("derivative of q(r) on both sides of the series' end, and at 
         for (int i = 0; i < 3; ++i) {
             const size_t k = size_t(i);
             const long double tolerance = 8 * (1 + a) * wide_epsilon<S>;
-            CHECK(std::abs(q(0).derivative[k] + sinc / 2 * x(i)) <= tolerance * std::min(1.0L, a));
+            const long double dw = static_cast<long double>(q(0).derivative[k]);
+            CHECK(std::abs(dw + sinc / 2 * x(i)) <= tolerance * std::min(1.0L, a));
             for (int d = 0; d < 3; ++d) {
                 const long double exact = (d == i ? sinc : 0.0L) + slope * x(d) * x(i);
-                CHECK(std::abs(q(1 + d).derivative[k] - exact) <= tolerance);
+                CHECK(std::abs(static_cast<long double>(q(1 + d).derivative[k]) - exact) <= tolerance);
             }
         }
     }
@@ -136,7 +137,7 @@ TEST_CASE_TEMPLATE("rotation matrix of a rotation vector is Rodrigues' formula",
         CAPTURE(angle);
         CHECK(is_rotation(R, 12 * epsilon<S>));  // |q|^2 is off by up to 4 eps, R^T R by twice that
         const Matrix3<long double> difference = R.template cast<long double>() - rodrigues(r);
-        CHECK(difference.norm() <= (4 + 2 * angle) * wide_epsilon<S>);
+        CHECK(difference.norm() <= static_cast<long double>(4 + 2 * angle) * wide_epsilon<S>);
         const S first_order = std::abs(R(2, 1) - R(1, 2) - 2 * r(0));
         if (angle < S(1e-5)) {  // R - R^T = 2 [r]x (1 - a^2/6): relative accuracy for tiny angles
             CHECK(first_order <= 4 * epsilon<S> * angle + angle * angle * angle);

@@ -119,10 +119,12 @@ TEST_CASE_TEMPLATE("a transform that is not finite is the worst", S, float, doub
     std::vector<AffineTransform<S>> transforms(4);
     transforms[1].linear(0, 2) = std::numeric_limits<S>::quiet_NaN();
     transforms[2].linear.setZero();
+    transforms[3].linear = -Matrix3<S>::Identity();
     const BlendReport<S> report = check_blends<S>(transforms);
     CHECK(report.vertex == 1);
     CHECK(report.near_singular);
-    CHECK(report.num_near_singular == 2);
+    CHECK(report.num_near_singular == 3);
+    CHECK_FALSE(std::isfinite(report.smallest_singular_value));
 }
 
 TEST_CASE("throws only on request, naming the vertex") {
