@@ -124,11 +124,10 @@ struct LogarithmicEnergyCase {
 
 TEST_CASE_TEMPLATE("materials obey the laws they claim", Case, StableNeoHookeanCase<float>,
                    StableNeoHookeanCase<double>, ArapCase<float>, ArapCase<double>, CorotatedLinearPolarCase<float>,
-                   CorotatedLinearPolarCase<double>, LinearCase<float>, LinearCase<double>,
-                   CorotatedLinearCase<float>, CorotatedLinearCase<double>, FungOrthotropicCase<float>,
-                   FungOrthotropicCase<double>, FungIsotropicCase<float>, FungIsotropicCase<double>,
-                   UserEnergyCase<float>, UserEnergyCase<double>, LogarithmicEnergyCase<float>,
-                   LogarithmicEnergyCase<double>) {
+                   CorotatedLinearPolarCase<double>, LinearCase<float>, LinearCase<double>, CorotatedLinearCase<float>,
+                   CorotatedLinearCase<double>, FungOrthotropicCase<float>, FungOrthotropicCase<double>,
+                   FungIsotropicCase<float>, FungIsotropicCase<double>, UserEnergyCase<float>, UserEnergyCase<double>,
+                   LogarithmicEnergyCase<float>, LogarithmicEnergyCase<double>) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         MaterialLawOptions options = Case::options();
         options.seed = seed;

@@ -25,7 +25,7 @@
 
 namespace softtissue {
 
-/// A plain number: what may be mixed with a Dual without carrying derivatives.
+/// What may be mixed with a Dual without carrying derivatives.
 template <class T>
 concept PlainNumber = std::is_arithmetic_v<T>;
 
@@ -80,8 +80,7 @@ struct Dual {
     friend constexpr Dual operator/(const Dual& a, const Dual& b) {
         const T inverse = T(Real(1)) / b.value;
         const T quotient = a.value * inverse;
-        return combined(quotient, a, b,
-                        [&](const T& da, const T& db) { return T((da - quotient * db) * inverse); });
+        return combined(quotient, a, b, [&](const T& da, const T& db) { return T((da - quotient * db) * inverse); });
     }
 
     // With a plain number no derivative of it is touched.
@@ -115,15 +114,8 @@ struct Dual {
         const Real divisor = Real(b);
         return combined(T(a.value / divisor), a, [&](const T& da) { return T(da / divisor); });
     }
-    template <PlainNumber A>
-    friend constexpr Dual operator/(A a, const Dual& b) {
-        return Dual(a) / b;
-    }
-
     friend constexpr bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
-    friend constexpr std::partial_ordering operator<=>(const Dual& a, const Dual& b) {
-        return a.value <=> b.value;
-    }
+    friend constexpr std::partial_ordering operator<=>(const Dual& a, const Dual& b) { return a.value <=> b.value; }
 
     /// The dual with `value` whose derivatives are f(da), one per variable.
     template <class F>
@@ -250,9 +242,8 @@ Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
     const T squared_radius = x.value * x.value + y.value * y.value;
     const T along_y = x.value / squared_radius;
     const T along_x = y.value / squared_radius;
-    return Dual<T, N>::combined(atan2(y.value, x.value), y, x, [&](const T& dy, const T& dx) {
-        return T(along_y * dy - along_x * dx);
-    });
+    return Dual<T, N>::combined(atan2(y.value, x.value), y, x,
+                                [&](const T& dy, const T& dx) { return T(along_y * dy - along_x * dx); });
 }
 
 template <class T, int N>

@@ -17,8 +17,8 @@
 /// Shapes      F, P: 3x3.  H: 9x9 on column-major vec(F), exactly symmetric.
 /// Units       those of the user's energy; J/m^3 in gives Pa out.
 /// Valid       where the energy is twice differentiable; a branch is differentiated as the piece it takes
-/// Cost        a product in the energy becomes 19 in the stress and 361 in the Hessian: right at once, and the reference
-///             for hand-written derivatives, which are far cheaper
+/// Cost        a product in the energy becomes 19 in the stress and 361 in the Hessian: right at once, and the
+///             reference for hand-written derivatives, which are far cheaper
 /// Tests       tests/unit/material/from_energy_test.cpp, tests/laws/material_laws_test.cpp
 #pragma once
 
@@ -42,17 +42,19 @@ concept HasEnergyDensity = requires(const E& energy, const Matrix3<S>& F) {
 
 /// An energy that can be differentiated twice: it takes numbers and numbers with derivatives.
 template <class E, class Scalar = double>
-concept EnergyDensityOnly =
-    std::copy_constructible<E> && HasEnergyDensity<E, Scalar> && HasEnergyDensity<E, Dual<Scalar, 9>> &&
-    HasEnergyDensity<E, Dual<Dual<Scalar, 9>, 9>>;
+concept EnergyDensityOnly = std::copy_constructible<E> && HasEnergyDensity<E, Scalar> &&
+                            HasEnergyDensity<E, Dual<Scalar, 9>> && HasEnergyDensity < E,
+        Dual < Dual<Scalar, 9>,
+9 >> ;
 
 /// The hyperelastic material of a user's energy density.
 template <class UserEnergy, FieldScalar S = double>
 struct FromEnergy {
-    static_assert(EnergyDensityOnly<UserEnergy, S>,
-                  "FromEnergy needs a type with the member "
-                  "`template <class S> S energy_density(const Eigen::Matrix<S, 3, 3>& F) const`: "
-                  "a template over the scalar that returns S by value (name `S` for locals too, not `double` or `auto`)");
+    static_assert(
+        EnergyDensityOnly<UserEnergy, S>,
+        "FromEnergy needs a type with the member "
+        "`template <class S> S energy_density(const Eigen::Matrix<S, 3, 3>& F) const`: "
+        "a template over the scalar that returns S by value (name `S` for locals too, not `double` or `auto`)");
 
     using Scalar = S;
 
@@ -71,8 +73,7 @@ struct FromEnergy {
         for (std::size_t column = 0; column < 9; ++column) {
             for (std::size_t row = column; row < 9; ++row) {
                 // One of the two mixed derivatives: they differ by round-off.
-                H(Index(row), Index(column)) = H(Index(column), Index(row)) =
-                    psi.derivative[column].derivative[row];
+                H(Index(row), Index(column)) = H(Index(column), Index(row)) = psi.derivative[column].derivative[row];
             }
         }
         return H;

@@ -26,7 +26,7 @@
 ///             "projection spectrum"      the filtered H is that of a numeric eigen-decomposition
 ///             "projection unchanged"     where H has no negative eigenvalue, filtering leaves it as it is
 /// Measures    relative to |H| (stress: |H| |F|, energy: |psi| + |H| |F|^2), the size of the terms that cancel in them,
-///             |.| the sum of absolute entries; the tolerance is MaterialLawOptions::round_off times epsilon of the scalar
+///             |.| the sum of absolute entries; the tolerance is MaterialLawOptions::round_off epsilons of the scalar
 /// Tests       tests/laws/material_laws_test.cpp, tests/unit/testing/material_laws_test.cpp
 #pragma once
 
@@ -59,10 +59,10 @@ struct MaterialLawOptions {
     int samples = 12;  ///< per class
     std::uint64_t seed = 1;
 
-    bool is_objective = true;           ///< false for a material that is given its rotation
-    bool is_isotropic = false;          ///< true where the material has no preferred direction
-    bool is_rest_stress_free = true;    ///< false for a pre-stretched material
-    bool has_exact_projection = true;   ///< false where projected_hessian() is positive but not the filtered spectrum
+    bool is_objective = true;          ///< false for a material that is given its rotation
+    bool is_isotropic = false;         ///< true where the material has no preferred direction
+    bool is_rest_stress_free = true;   ///< false for a pre-stretched material
+    bool has_exact_projection = true;  ///< false where projected_hessian() is positive but not the filtered spectrum
     std::optional<LameParameters<double>> small_strain{};  ///< the linear elasticity it becomes at F = I
 
     /// Allowed round-off, in epsilon of the scalar: a sum of 81 products (projection) with a factor of safety.
@@ -187,10 +187,10 @@ private:
             const double error = size(projected - filtered(H, filter));
             report_.at_most("projection spectrum", relative(error, scale), tolerance_, where);
         }
-        // Eigenvalues that are 0 up to round-off count as 0: filtering all nine moves the entries of H by 54 times as much.
+        // Eigenvalues that are 0 up to round-off count as 0: filtering nine of them moves H by 54 times as much.
         if (relative(smallest_eigenvalue(H), scale) >= -tolerance_ / 100) {
-            report_.at_most("projection unchanged", relative(size(projected - filtered(H, PsdFilter::none)), scale), tolerance_,
-                            where);
+            report_.at_most("projection unchanged", relative(size(projected - filtered(H, PsdFilter::none)), scale),
+                            tolerance_, where);
         }
     }
 

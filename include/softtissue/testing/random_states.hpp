@@ -98,21 +98,21 @@ Matrix3<Scalar> random_rotation(RandomGenerator& random) {
 
 /// Kinds of deformation gradients that stress a material in different ways.
 enum class StateClass {
-    identity,          ///< exactly I
-    near_identity,     ///< I + entries of size 0.05
-    small_strain,      ///< any rotation times a stretch of 0.99 .. 1.01
-    general,           ///< singular values 0.5 .. 1.6
-    large_stretch,     ///< one singular value 2 .. 3, two of 0.4 .. 0.9
-    near_singular,     ///< |s3| from 1e-8 to 1e-2, either sign
-    inverted,          ///< det F < 0: s3 from -0.6 to -0.1
-    gaussian,          ///< normal entries
-    equal_stretches,   ///< two or three equal singular values 0.6 .. 1.5
+    identity,         ///< exactly I
+    near_identity,    ///< I + entries of size 0.05
+    small_strain,     ///< any rotation times a stretch of 0.99 .. 1.01
+    general,          ///< singular values 0.5 .. 1.6
+    large_stretch,    ///< one singular value 2 .. 3, two of 0.4 .. 0.9
+    near_singular,    ///< |s3| from 1e-8 to 1e-2, either sign
+    inverted,         ///< det F < 0: s3 from -0.6 to -0.1
+    gaussian,         ///< normal entries
+    equal_stretches,  ///< two or three equal singular values 0.6 .. 1.5
 };
 
 inline constexpr std::array<StateClass, 9> all_state_classes = {
-    StateClass::identity,      StateClass::near_identity, StateClass::small_strain,
-    StateClass::general,       StateClass::large_stretch, StateClass::near_singular,
-    StateClass::inverted,      StateClass::gaussian,      StateClass::equal_stretches};
+    StateClass::identity, StateClass::near_identity, StateClass::small_strain,
+    StateClass::general,  StateClass::large_stretch, StateClass::near_singular,
+    StateClass::inverted, StateClass::gaussian,      StateClass::equal_stretches};
 
 /// The classes with det F > 0, for laws with a barrier against inversion.
 inline constexpr std::array<StateClass, 6> orientation_preserving_state_classes = {
@@ -120,9 +120,9 @@ inline constexpr std::array<StateClass, 6> orientation_preserving_state_classes 
     StateClass::general,  StateClass::large_stretch, StateClass::equal_stretches};
 
 constexpr std::string_view name_of(StateClass state_class) {
-    constexpr std::array<std::string_view, 9> names = {
-        "identity",      "near identity", "small strain", "general",        "large stretch",
-        "near singular", "inverted",      "gaussian",     "equal stretches"};
+    constexpr std::array<std::string_view, 9> names = {"identity", "near identity", "small strain",
+                                                       "general",  "large stretch", "near singular",
+                                                       "inverted", "gaussian",      "equal stretches"};
     return names[std::size_t(state_class)];
 }
 

@@ -83,32 +83,48 @@ TEST_CASE_TEMPLATE("elementary functions have their first and second derivatives
     using std::abs, std::acos, std::cos, std::erf, std::exp, std::expm1, std::log, std::log1p, std::pow, std::sin,
         std::sqrt, std::tan, std::tanh;
     for (const S x : {S(0.1), S(0.35), S(0.7), S(0.9)}) {
-        check_derivatives<S>("sqrt", [](auto v) { return sqrt(v); }, x, S(0.5) / sqrt(x), S(-0.25) / (x * sqrt(x)));
-        check_derivatives<S>("exp", [](auto v) { return exp(v); }, x, exp(x), exp(x));
-        check_derivatives<S>("expm1", [](auto v) { return expm1(v); }, x, exp(x), exp(x));
-        check_derivatives<S>("log", [](auto v) { return log(v); }, x, 1 / x, -1 / (x * x));
-        check_derivatives<S>("log1p", [](auto v) { return log1p(v); }, x, 1 / (1 + x), -1 / ((1 + x) * (1 + x)));
-        check_derivatives<S>("x^3", [](auto v) { return pow(v, S(3)); }, x, 3 * x * x, 6 * x);
-        check_derivatives<S>("x^2.5", [](auto v) { return pow(v, S(2.5)); }, x, S(2.5) * pow(x, S(1.5)),
-                             S(3.75) * pow(x, S(0.5)));
-        check_derivatives<S>("x^x", [](auto v) { return pow(v, v); }, x, pow(x, x) * (log(x) + 1),
-                             pow(x, x) * ((log(x) + 1) * (log(x) + 1) + 1 / x));
-        check_derivatives<S>("sin", [](auto v) { return sin(v); }, x, cos(x), -sin(x));
-        check_derivatives<S>("cos", [](auto v) { return cos(v); }, x, -sin(x), -cos(x));
+        check_derivatives<S>(
+            "sqrt", [](auto v) { return sqrt(v); }, x, S(0.5) / sqrt(x), S(-0.25) / (x * sqrt(x)));
+        check_derivatives<S>(
+            "exp", [](auto v) { return exp(v); }, x, exp(x), exp(x));
+        check_derivatives<S>(
+            "expm1", [](auto v) { return expm1(v); }, x, exp(x), exp(x));
+        check_derivatives<S>(
+            "log", [](auto v) { return log(v); }, x, 1 / x, -1 / (x * x));
+        check_derivatives<S>(
+            "log1p", [](auto v) { return log1p(v); }, x, 1 / (1 + x), -1 / ((1 + x) * (1 + x)));
+        check_derivatives<S>(
+            "x^3", [](auto v) { return pow(v, S(3)); }, x, 3 * x * x, 6 * x);
+        check_derivatives<S>(
+            "x^2.5", [](auto v) { return pow(v, S(2.5)); }, x, S(2.5) * pow(x, S(1.5)), S(3.75) * pow(x, S(0.5)));
+        check_derivatives<S>(
+            "x^x", [](auto v) { return pow(v, v); }, x, pow(x, x) * (log(x) + 1),
+            pow(x, x) * ((log(x) + 1) * (log(x) + 1) + 1 / x));
+        check_derivatives<S>(
+            "sin", [](auto v) { return sin(v); }, x, cos(x), -sin(x));
+        check_derivatives<S>(
+            "cos", [](auto v) { return cos(v); }, x, -sin(x), -cos(x));
         const S t = tan(x);
-        check_derivatives<S>("tan", [](auto v) { return tan(v); }, x, 1 + t * t, 2 * t * (1 + t * t));
+        check_derivatives<S>(
+            "tan", [](auto v) { return tan(v); }, x, 1 + t * t, 2 * t * (1 + t * t));
         const S c = sqrt(1 - x * x);
-        check_derivatives<S>("acos", [](auto v) { return acos(v); }, x, -1 / c, -x / (c * c * c));
+        check_derivatives<S>(
+            "acos", [](auto v) { return acos(v); }, x, -1 / c, -x / (c * c * c));
         const S th = tanh(x);
-        check_derivatives<S>("tanh", [](auto v) { return tanh(v); }, x, 1 - th * th, -2 * th * (1 - th * th));
+        check_derivatives<S>(
+            "tanh", [](auto v) { return tanh(v); }, x, 1 - th * th, -2 * th * (1 - th * th));
         const S g = 2 * std::numbers::inv_sqrtpi_v<S> * exp(-x * x);
-        check_derivatives<S>("erf", [](auto v) { return erf(v); }, x, g, -2 * x * g);
-        check_derivatives<S>("abs", [](auto v) { return abs(v); }, -x, S(-1), S(0));
-        check_derivatives<S>("abs", [](auto v) { return abs(v); }, x, S(1), S(0));
-        check_derivatives<S>("1/x", [](auto v) { return 1 / v; }, x, -1 / (x * x), 2 / (x * x * x));
-        check_derivatives<S>("arithmetic with plain numbers",
-                             [](auto v) { return (3 - v) * S(2) + v / 4 - (v - 1) * v + (2 + v); }, x,
-                             S(-2) + S(0.25) - (2 * x - 1) + 1, S(-2));
+        check_derivatives<S>(
+            "erf", [](auto v) { return erf(v); }, x, g, -2 * x * g);
+        check_derivatives<S>(
+            "abs", [](auto v) { return abs(v); }, -x, S(-1), S(0));
+        check_derivatives<S>(
+            "abs", [](auto v) { return abs(v); }, x, S(1), S(0));
+        check_derivatives<S>(
+            "1/x", [](auto v) { return 1 / v; }, x, -1 / (x * x), 2 / (x * x * x));
+        check_derivatives<S>(
+            "arithmetic with plain numbers", [](auto v) { return (3 - v) * S(2) + v / 4 - (v - 1) * v + (2 + v); }, x,
+            S(-2) + S(0.25) - (2 * x - 1) + 1, S(-2));
     }
 }
 

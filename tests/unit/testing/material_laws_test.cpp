@@ -144,8 +144,8 @@ struct AlwaysClamped : Right<S> {
 static_assert(HyperelasticMaterial<AsymmetricHessian<double>> && HasProjectedHessian<Unprojected<float>>);
 
 TEST_CASE_TEMPLATE("a right material breaks no law", S, float, double) {
-    const LawReport report = check_material_laws(
-        Right<S>{}, {.is_isotropic = true, .small_strain = LameParameters<double>{1, 2}});
+    const LawReport report =
+        check_material_laws(Right<S>{}, {.is_isotropic = true, .small_strain = LameParameters<double>{1, 2}});
     CHECK_MESSAGE(report.all_passed(), report.summary());
     CHECK(report.results.size() == 12);
 }
@@ -156,10 +156,8 @@ TEST_CASE_TEMPLATE("one mistake breaks the law it is about and no other", S, flo
     CHECK(broken_laws(check_material_laws(ScaledHessian<S>{})) == "hessian rate");
     CHECK(broken_laws(check_material_laws(RowMajorHessian<S>{})) == "hessian rate");
     CHECK(broken_laws(check_material_laws(AsymmetricHessian<S>{})) == "hessian rate, hessian symmetry");
-    CHECK(broken_laws(check_material_laws(FromEnergy<NotObjective, S>{})) ==
-          "objective energy, objective stress");
-    CHECK(broken_laws(check_material_laws(FromEnergy<Fibrous, S>{}, {.is_isotropic = true})) ==
-          "isotropic energy");
+    CHECK(broken_laws(check_material_laws(FromEnergy<NotObjective, S>{})) == "objective energy, objective stress");
+    CHECK(broken_laws(check_material_laws(FromEnergy<Fibrous, S>{}, {.is_isotropic = true})) == "isotropic energy");
     CHECK(broken_laws(check_material_laws(FromEnergy<Prestressed, S>{})) == "rest stress");
     CHECK(broken_laws(check_material_laws(Right<S>{}, {.small_strain = LameParameters<double>{1, 3}})) ==
           "small strain");
@@ -167,8 +165,7 @@ TEST_CASE_TEMPLATE("one mistake breaks the law it is about and no other", S, flo
     CHECK(broken_laws(check_material_laws(Overprojected<S>{})) == "projection spectrum, projection unchanged");
     CHECK(broken_laws(check_material_laws(AlwaysClamped<S>{})) == "projection spectrum");
     CHECK(broken_laws(check_material_laws(FromEnergy<Barrier, S>{},
-                                          {.states = {StateClass::small_strain, StateClass::inverted}})) ==
-          "finite");
+                                          {.states = {StateClass::small_strain, StateClass::inverted}})) == "finite");
 }
 
 TEST_CASE("a stress that is wrong by 1e-4 is caught in double") {
@@ -177,8 +174,8 @@ TEST_CASE("a stress that is wrong by 1e-4 is caught in double") {
 }
 
 TEST_CASE("a law that is not claimed is not checked") {
-    const auto claims_nothing = MaterialLawOptions{
-        .is_objective = false, .is_rest_stress_free = false, .has_exact_projection = false};
+    const auto claims_nothing =
+        MaterialLawOptions{.is_objective = false, .is_rest_stress_free = false, .has_exact_projection = false};
     const LawReport report = check_material_laws(FromEnergy<NotObjective>{}, claims_nothing);
     CHECK_MESSAGE(report.all_passed(), report.summary());
     for (const char* law : {"objective energy", "objective stress", "isotropic energy", "rest stress", "small strain",
