@@ -8,6 +8,7 @@
 ///             in all directions, l a growth along the bone a, h a thickness, n the skin's smoothed normal.
 /// Shapes      displacement() 3n x 10 [m per standard deviation], row 3v + d; joint_displacement() 3 x 24 each.
 ///             Mirror symmetric. Size and legs keep the floor.
+/// Valid       +-2 along one direction, +-1 along all at once: no triangle turns over, the skin does not cross itself.
 /// Tests       tests/unit/model/human_blend_shapes_test.cpp
 #pragma once
 
@@ -48,7 +49,7 @@ public:
     /// All directions, 3n x 10; weights are joints x n.
     MatrixX<double> displacement(const HumanMesh& mesh, const MatrixX<double>& weights) const {
         const Matrix3X<double> normals = mesh.smoothed(vertex_normals<double>(mesh.vertices, mesh.faces), 8);
-        MatrixX<double> result(3 * mesh.num_vertices(), Index(num_shapes));
+        MatrixX<double> result(3 * mesh.num_vertices(), num_shapes);
         for (Index k = 0; k < num_shapes; ++k) {
             const Growth g = growth(k);
             const Matrix3X<double> m = joint_displacement(k);
@@ -84,10 +85,10 @@ private:
 
     struct Growth {
         Vector3<double> root = Vector3<double>::Zero();
-        Matrix3X<double> own = Matrix3X<double>::Zero(3, Index(human_joint::count));
-        VectorX<double> all = VectorX<double>::Zero(Index(human_joint::count));
-        VectorX<double> along = VectorX<double>::Zero(Index(human_joint::count));
-        VectorX<double> thickness = VectorX<double>::Zero(Index(human_joint::count));
+        Matrix3X<double> own = Matrix3X<double>::Zero(3, human_joint::count);
+        VectorX<double> all = VectorX<double>::Zero(human_joint::count);
+        VectorX<double> along = VectorX<double>::Zero(human_joint::count);
+        VectorX<double> thickness = VectorX<double>::Zero(human_joint::count);
         std::vector<Bump> bumps;
     };
 

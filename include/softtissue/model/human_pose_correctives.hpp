@@ -6,8 +6,9 @@
 /// Equation    If only joint j turns, a point y = x - J_j follows ((1 - W) I + W R) y, W the weights of j and all
 ///             joints beyond it. Across the axis its length shrinks by sqrt(1 - 2 W (1 - W)(1 - cos a)). With
 ///             -sym(R - I) y = (1 - cos a) y_across, the offset
-///                 d(x) = -W (1 - W) sym(R_j - I) (x - J_j)
-///             leaves a shrinkage of fourth order in a only, for every axis. Muscles add
+///                 d(x) = -c W (1 - W) sym(R_j - I) (x - J_j)
+///             undoes the part c of the shrinkage to second order in a, for every axis. c = 1 would keep distances from the
+///             axis but swell the outside of a bend (as dual quaternions do); c = 0.6 about keeps the volume. Muscles add
 ///                 d(x) = (e . vee(R_j - I)) b(x) n(x),   e . vee = sin a for a turn by a about e.
 /// Shapes      3n x 9 (joints - 1) [m], sparse; column 9 (j - 1) + 3 a + b multiplies (R_j - I)[a, b].
 /// Valid       zero at rest; mirror symmetric.
@@ -33,6 +34,8 @@ class HumanPoseCorrectives {
 public:
     using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+    static constexpr double given_back = 0.6;  // c
+
     explicit HumanPoseCorrectives(Matrix3X<double> rest_joints)
         : joints_(std::move(rest_joints)), muscles_(muscles(joints_)) {}
 
@@ -50,8 +53,8 @@ public:
                     const Vector3<double> y = x - joints_.col(j);
                     for (Index a = 0; a < 3; ++a) {
                         for (Index b = 0; b < 3; ++b) {
-                            columns(a, 3 * a + b) -= 0.5 * overlap * y(b);
-                            columns(b, 3 * a + b) -= 0.5 * overlap * y(a);
+                            columns(a, 3 * a + b) -= 0.5 * given_back * overlap * y(b);
+                            columns(b, 3 * a + b) -= 0.5 * given_back * overlap * y(a);
                         }
                     }
                 }
@@ -84,13 +87,13 @@ private:
         };
         const Vector3<double> x = Vector3<double>::UnitX();
         const Vector3<double> across_arm = Vector3<double>(-0.743, -0.669, 0.0);  // bends the forearm forwards
-        return {{elbow, across_arm, between(shoulder, elbow, 0.55, 0.045), 0.040, 0.008},
-                {elbow, across_arm, between(elbow, wrist, 0.20, 0.025), 0.035, 0.004},
-                {shoulder, Vector3<double>::UnitZ(), between(shoulder, elbow, 0.10, 0.0), 0.045, 0.005},
-                {knee, x, between(hip, knee, 0.60, -0.06), 0.060, 0.006},
-                {knee, x, between(knee, ankle, 0.28, -0.06), 0.050, 0.005},
-                {hip, -x, between(hip, knee, 0.0, -0.12), 0.060, 0.008},
-                {ankle, x, between(knee, ankle, 0.30, -0.06), 0.050, 0.004}};
+        return {{elbow, across_arm, between(shoulder, elbow, 0.55, 0.045), 0.040, 0.006},
+                {elbow, across_arm, between(elbow, wrist, 0.20, 0.025), 0.035, 0.003},
+                {shoulder, Vector3<double>::UnitZ(), between(shoulder, elbow, 0.10, 0.0), 0.045, 0.003},
+                {knee, x, between(hip, knee, 0.60, -0.06), 0.060, 0.004},
+                {knee, x, between(knee, ankle, 0.28, -0.06), 0.050, 0.003},
+                {hip, -x, between(hip, knee, 0.0, -0.12), 0.060, 0.004},
+                {ankle, x, between(knee, ankle, 0.30, -0.06), 0.050, 0.003}};
     }
 
     /// W: each joint's weights with those of all joints that hang from it.

@@ -27,7 +27,7 @@ public:
 
     /// joints x n.
     MatrixX<double> weights(const HumanMesh& mesh) const {
-        MatrixX<double> result(Index(human_joint::count), mesh.num_vertices());
+        MatrixX<double> result(human_joint::count, mesh.num_vertices());
         for (Index v = 0; v < mesh.num_vertices(); ++v) {
             result.col(v) = at(mesh.vertices.col(v));
         }
@@ -48,7 +48,7 @@ public:
     VectorX<double> at(const Vector3<double>& x) const {
         using namespace human_joint;
         const Vector3<double> y = mirrored(x);
-        VectorX<double> w = VectorX<double>::Zero(Index(count));
+        VectorX<double> w = VectorX<double>::Zero(count);
         const double left = arm(x, w, 0);
         const double right = arm(y, w, 1);
         const double arms = left + right;
@@ -108,7 +108,9 @@ private:
              {ankle, cut(x, ankle, {0.0, -1.0, 0.3}, -0.03, 0.03)},
              {knee, cut(x, knee, shin, -0.05, 0.05)},
              {hip, cut(x, hip, {0.48, -0.85, 0.22}, -0.035, 0.085)}}};
-        const double of_side = share * smooth_step(-0.02, 0.02, x(0));
+        // Both legs share the skin between them above the crotch, not the inner sides of the thighs below it.
+        const double seam = 0.003 + 0.02 * smooth_step(0.77, 0.83, x(1));
+        const double of_side = share * smooth_step(-seam, seam, x(0));
         double beyond = 0.0;
         for (const auto& [joint, s] : cuts) {
             w(joint + side) = of_side * (1.0 - beyond) * s;

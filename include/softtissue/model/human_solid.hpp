@@ -24,10 +24,9 @@ namespace softtissue {
 
 /// Joint numbers of SMPL, left side; the right one is the next number.
 namespace human_joint {
-enum : Index {
-    pelvis = 0, hip = 1, spine1 = 3, knee = 4, spine2 = 6, ankle = 7, spine3 = 9, foot = 10, neck = 12,
-    collar = 13, head = 15, shoulder = 16, elbow = 18, wrist = 20, hand = 22, count = 24
-};
+inline constexpr Index pelvis = 0, hip = 1, spine1 = 3, knee = 4, spine2 = 6, ankle = 7, spine3 = 9, foot = 10;
+inline constexpr Index neck = 12, collar = 13, head = 15, shoulder = 16, elbow = 18, wrist = 20, hand = 22;
+inline constexpr Index count = 24;
 }  // namespace human_joint
 
 inline std::vector<std::int32_t> human_parents() {
@@ -53,7 +52,7 @@ inline Vector3<double> mirrored(const Vector3<double>& x) { return {-x(0), x(1),
 /// Rest positions of the joints, 3 x 24.
 inline Matrix3X<double> human_rest_joints() {
     using namespace human_joint;
-    Matrix3X<double> J(3, Index(count));
+    Matrix3X<double> J(3, count);
     const auto middle = [&](Index j, double y, double z) { J.col(j) << 0.0, y, z; };
     const auto pair = [&](Index j, const Vector3<double>& x) {
         J.col(j) = x;

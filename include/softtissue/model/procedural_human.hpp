@@ -8,8 +8,8 @@
 ///             y up, facing +z, left = +x, soles on y = 0. Up to 6 joints a vertex.
 /// Rest pose   an A-pose: arms 48 degrees below the horizontal (see HumanSolid). Rotations made for SMPL's T-pose
 ///             template do not fit directly.
-/// Shapes dir. see HumanBlendShapes; one standard deviation is a plausible step, +-2 stays a body.
-/// Valid       the same bits at every call; the body's proportions are a design, not statistics.
+/// Valid       shape coefficients as HumanBlendShapes says. The same bits at every call. The proportions are a design,
+///             not statistics. Torso and limbs have no clefts: every vertex sees its triangles within 60 degrees.
 /// Cost        about 1 s
 /// Tests       tests/unit/model/procedural_human_test.cpp
 #pragma once

@@ -159,7 +159,7 @@ private:
     double roundness_;
 };
 
-/// Value and gradient of a distance at x, from four samples on a tetrahedron (errors of second order in `step`).
+/// Value and gradient of a distance at x, from four samples on a tetrahedron: errors of second and of first order in `step`.
 struct DistanceSample {
     double value;
     Vector3<double> gradient;
