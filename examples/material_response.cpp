@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // ctest: --out material_response_test --columns 10
 //
-// A patch of skin on bone under weights from 20 g to 2 kg (Romero et al. 2020, fig. 5): Fung-orthotropic skin against
+// A patch of skin, pulled off its bone by hanging weights from 20 g to 2 kg (Romero et al. 2020, fig. 5): Fung-orthotropic skin against
 // stable neo-Hookean flesh of the same stiffness under small loads.
 #include "support/mesh_picture.hpp"
 
@@ -33,7 +33,7 @@ namespace {
 constexpr double side = 0.12, thickness = 0.025, disc_radius = 0.03, gravity = 9.81;
 constexpr double poisson_ratio = 0.2;
 
-/// A square of skin, `columns` boxes along each side, on a bone that does not move; a weight on a disc in its middle.
+/// A square of skin, `columns` boxes along each side, on a bone that does not move; a weight hangs from a disc in its middle.
 struct Patch {
     PrismLayers layers;
     CellMesh<Prism6, double> mesh;
@@ -65,9 +65,9 @@ struct Patch {
         share /= share.sum();
     }
 
-    /// Mean depth under the disc [m] for each of the `weights` [kg], ascending; every solve starts from the last one.
+    /// How far the disc is pulled out [m] for each of the `weights` [kg], ascending; every solve starts from the last one.
     template <class Material>
-    std::vector<double> depths(const Material& material, const std::vector<double>& weights) const {
+    std::vector<double> pulls(const Material& material, const std::vector<double>& weights) const {
         ElasticEnergy<Prism6, UniformField<Material>> elastic(mesh, {material});
         DeadLoad<double> load(Matrix3X<double>::Zero(3, mesh.num_vertices()));
         const SequentialExecutor executor;
@@ -77,11 +77,11 @@ struct Patch {
         std::vector<double> result;
         for (const double weight : weights) {
             Matrix3X<double> forces = Matrix3X<double>::Zero(3, mesh.num_vertices());
-            forces.row(2) = -weight * gravity * share.transpose();
+            forces.row(2) = weight * gravity * share.transpose();
             load.set_forces(forces);
             const SolveReport<double> report = minimise(objective, linear_solver, d, {.max_iterations = 200});
-            require(report.succeeded(), "patch under ", weight, " kg: ", to_string(report.status));
-            result.push_back(-d.row(2).dot(share));
+            require(report.succeeded(), "patch with ", weight, " kg: ", to_string(report.status));
+            result.push_back(d.row(2).dot(share));
         }
         return result;
     }
@@ -92,19 +92,19 @@ void plot(const std::filesystem::path& path, const std::vector<double>& weights,
     constexpr double left = 80, top = 60, width = 620, height = 380;
     examples::Picture picture(760, 520);
     cairo_t* const context = picture.context();
-    const double deepest = 5.0 * std::ceil(1e3 * std::max(fung.back(), flesh.back()) / 5.0);
-    const auto draw = [&](const std::vector<double>& depths, double red, double green, double blue) {
+    const double farthest = 5.0 * std::ceil(1e3 * std::max(fung.back(), flesh.back()) / 5.0);
+    const auto draw = [&](const std::vector<double>& pulls, double red, double green, double blue) {
         cairo_set_source_rgb(context, red, green, blue);
         cairo_set_line_width(context, 3.0);
         cairo_move_to(context, left, top + height);
         for (size_t i = 0; i < weights.size(); ++i) {
-            cairo_line_to(context, left + width * weights[i] / weights.back(), top + height * (1.0 - 1e3 * depths[i] / deepest));
+            cairo_line_to(context, left + width * weights[i] / weights.back(), top + height * (1.0 - 1e3 * pulls[i] / farthest));
         }
         cairo_stroke(context);
     };
     for (int tick = 0; tick <= 4; ++tick) {
         char label[32];
-        std::snprintf(label, sizeof label, "%.3g", deepest * tick / 4.0);
+        std::snprintf(label, sizeof label, "%.3g", farthest * tick / 4.0);
         picture.text(label, left - 10, top + height * (1.0 - tick / 4.0) + 5, 15, 1.0);
         std::snprintf(label, sizeof label, "%.3g", weights.back() * tick / 4.0);
         picture.text(label, left + width * tick / 4.0, top + height + 24, 15, 0.5);
@@ -112,7 +112,7 @@ void plot(const std::filesystem::path& path, const std::vector<double>& weights,
     }
     draw(flesh, 0.20, 0.45, 0.75);
     draw(fung, 0.80, 0.20, 0.15);
-    picture.text("depth under the weight [mm]", left - 60, top - 24, 17);
+    picture.text("how far the weight pulls [mm]", left - 60, top - 24, 17);
     picture.text("weight [kg]", left + width / 2, top + height + 52, 17, 0.5);
     picture.rectangle(left + 20, top + 14, 30, 4, {0.20F, 0.45F, 0.75F});
     picture.text("stable neo-Hookean, same stiffness under small loads", left + 60, top + 22, 15);
@@ -128,26 +128,26 @@ int run(const std::string& out, int columns) {
     const FungOrthotropic<double> fung(
         {.normal_modulus = 5e3, .tangential_modulus = 10e3, .poisson_ratio = poisson_ratio, .exponent = 4.0}, basis);
 
-    // In the linear range depth is inversely proportional to the modulus: one trial fits it.
+    // In the linear range the pull is inversely proportional to the modulus: one trial fits it.
     const std::vector<double> small{1e-4};
     const double trial_modulus = 5e3;
     const auto flesh_of = [](double E) { return StableNeoHookean<double>::from_young_poisson({E, poisson_ratio}); };
     const double fitted_modulus =
-        trial_modulus * patch.depths(flesh_of(trial_modulus), small)[0] / patch.depths(fung, small)[0];
+        trial_modulus * patch.pulls(flesh_of(trial_modulus), small)[0] / patch.pulls(fung, small)[0];
 
     std::vector<double> weights{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0};
-    const std::vector<double> fung_depths = patch.depths(fung, weights);
-    const std::vector<double> flesh_depths = patch.depths(flesh_of(fitted_modulus), weights);
+    const std::vector<double> fung_pulls = patch.pulls(fung, weights);
+    const std::vector<double> flesh_pulls = patch.pulls(flesh_of(fitted_modulus), weights);
     std::printf("skin patch of %.0f x %.0f mm, %.0f mm thick, %d prisms; neo-Hookean E = %.0f Pa fits the small-load stiffness\n\n"
                 "weight [kg]   Fung [mm]   neo-Hookean [mm]\n",
                 1e3 * side, 1e3 * side, 1e3 * thickness, int(patch.mesh.num_cells()), fitted_modulus);
     for (size_t i = 0; i < weights.size(); ++i) {
-        std::printf("%8.2f  %11.2f  %14.2f\n", weights[i], 1e3 * fung_depths[i], 1e3 * flesh_depths[i]);
+        std::printf("%8.2f  %11.2f  %14.2f\n", weights[i], 1e3 * fung_pulls[i], 1e3 * flesh_pulls[i]);
     }
-    std::printf("\nfrom 0.5 to 2 kg, four times the weight: Fung %.2f times as deep, neo-Hookean %.2f times\n",
-                fung_depths.back() / fung_depths[5], flesh_depths.back() / flesh_depths[5]);
+    std::printf("\nfrom 0.5 to 2 kg, four times the weight: Fung %.2f times as far, neo-Hookean %.2f times\n",
+                fung_pulls.back() / fung_pulls[5], flesh_pulls.back() / flesh_pulls[5]);
     std::filesystem::create_directories(out);
-    plot(std::filesystem::path(out) / "material_response.png", weights, fung_depths, flesh_depths);
+    plot(std::filesystem::path(out) / "material_response.png", weights, fung_pulls, flesh_pulls);
     std::printf("plot in %s/material_response.png\n", out.c_str());
     return 0;
 }
@@ -157,7 +157,7 @@ int run(const std::string& out, int columns) {
 int main(int argc, char** argv) {
     std::string out = "material_response";
     int columns = 20;
-    CLI::App app("Skin under a weight: Fung-orthotropic against stable neo-Hookean (Romero et al. 2020, fig. 5).");
+    CLI::App app("Skin pulled by a weight: Fung-orthotropic against stable neo-Hookean (Romero et al. 2020, fig. 5).");
     app.add_option("--out", out, "folder for the plot")->capture_default_str();
     app.add_option("--columns", columns, "boxes along a side of the patch")->check(CLI::Range(4, 60))->capture_default_str();
     CLI11_PARSE(app, argc, argv);

@@ -8,6 +8,7 @@
 #include <softtissue/material/from_energy.hpp>
 #include <softtissue/solver/continuation.hpp>
 #include <softtissue/solver/direct_solver.hpp>
+#include <softtissue/solver/objective.hpp>
 #include <softtissue/testing/material_laws.hpp>
 
 #include <cstdio>
