@@ -49,7 +49,7 @@ struct Assembled {
 };
 
 /// The pose farthest from rest, turns of the whole body aside.
-const Pose<Scalar>& strongest_pose(const Motion<Scalar>& motion) {
+inline const Pose<Scalar>& strongest_pose(const Motion<Scalar>& motion) {
     const auto strength = [](const Pose<Scalar>& pose) {
         return pose.rotation_vectors.rightCols(pose.rotation_vectors.cols() - 1).squaredNorm();
     };
