@@ -49,7 +49,7 @@ public:
         return cholesky_.info() == Eigen::Success;
     }
 
-    /// The factor of the last Hessian that was positive definite.
+    /// The factor of the last Hessian, provided that it was positive definite.
     const Cholesky& factor() const { return cholesky_; }
 
 private:

@@ -5,7 +5,7 @@
 /// Equation    d_{n+1} = argmin 1/(2 dt^2) |x - xt|_M^2 + sum of terms,  x = p + A d,  xt = x_n + dt v_n + dt^2 a,
 ///             v_{n+1} = (x_{n+1} - x_n) / dt;  p, A of the new time (a Placement), prescribed columns of d as given
 /// Shapes      positions, velocities, displacement 3 x vertices [m, m/s, m]; masses vertices [kg]
-/// Refuses     a time step that is not positive, masses that are not positive at free vertices
+/// Refuses     a time step that is not positive, masses that are not positive at free vertices or not one per vertex
 /// Source      Romero et al. 2020, eq. (3)
 /// Tests       tests/unit/solver/implicit_euler_test.cpp, reference dynamics in tests/reference_check
 #pragma once
@@ -90,6 +90,8 @@ public:
 
 private:
     static VectorX<Scalar> free_masses(VectorX<Scalar> masses, const PrescribedVertices& prescribed) {
+        require(masses.size() == prescribed.num_vertices(), "implicit Euler: ", masses.size(), " masses, expected one for each of ",
+                prescribed.num_vertices(), " vertices");
         for (Index v = 0; v < masses.size(); ++v) {
             if (prescribed.is_prescribed(v)) {
                 masses(v) = Scalar(0);

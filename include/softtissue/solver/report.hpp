@@ -12,7 +12,7 @@
 namespace softtissue {
 
 enum class SolveStatus {
-    converged,            ///< a stated tolerance is met at a point where the Hessian is positive definite
+    converged,            ///< a stated tolerance is met; that of the step counts only where the Hessian is positive definite
     precision_limit,      ///< no further decrease can be resolved in this precision; as good as it gets
     iteration_limit,      ///< the allowed iterations are spent
     saddle_point,         ///< the gradient vanishes but the Hessian is indefinite: not a minimum
