@@ -44,6 +44,7 @@
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/linalg/svd3.hpp>
+#include <softtissue/linalg/symmetric_eigen.hpp>
 #include <softtissue/material/arap.hpp>
 #include <softtissue/material/concepts.hpp>
 #include <softtissue/material/corotated_linear.hpp>
