@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include <softtissue/linalg/symmetric_eigen.hpp>
+
+#include <softtissue/testing/random_states.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+
+using namespace softtissue;
+
+namespace {
+
+template <class Scalar, int N>
+using Square = Eigen::Matrix<Scalar, N, N>;
+
+/// Q diag(values) Q^T with a random orthogonal Q: a product of rotations in every plane.
+template <class Scalar, int N>
+Square<Scalar, N> with_spectrum(const std::array<double, std::size_t(N)>& values, RandomGenerator& random) {
+    Square<double, N> Q = Square<double, N>::Identity();
+    for (int p = 0; p < N; ++p) {
+        for (int q = p + 1; q < N; ++q) {
+            const double angle = random.uniform(0, 6.28), c = std::cos(angle), s = std::sin(angle);
+            const Eigen::Matrix<double, N, 1> u = Q.col(p), v = Q.col(q);
+            Q.col(p) = c * u - s * v;
+            Q.col(q) = s * u + c * v;
+        }
+    }
+    const Square<double, N> H = Q * Eigen::Map<const Eigen::Matrix<double, N, 1>>(values.data()).asDiagonal() * Q.transpose();
+    return H.template cast<Scalar>();
+}
+
+template <class Scalar, int N>
+Square<Scalar, N> random_symmetric(RandomGenerator& random) {
+    Square<Scalar, N> H;
+    for (int j = 0; j < N; ++j) {
+        for (int i = j; i < N; ++i) {
+            H(i, j) = H(j, i) = Scalar(random.normal());
+        }
+    }
+    return H;
+}
+
+/// A few units in the last place of the largest eigenvalue, for N rotations a column.
+template <class Scalar, int N>
+Scalar tolerance(Scalar largest) {
+    return Scalar(16 * N) * std::numeric_limits<Scalar>::epsilon() * largest;
+}
+
+template <class Scalar, int N>
+void check(const Square<Scalar, N>& H) {
+    const SymmetricEigen<Scalar, N> eigen = symmetric_eigen<Scalar, N>(H);
+    const Scalar size = std::max(H.cwiseAbs().maxCoeff(), std::numeric_limits<Scalar>::min());
+    const Square<Scalar, N> rebuilt = eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose();
+    const Square<Scalar, N> gram = eigen.vectors.transpose() * eigen.vectors;
+    CHECK((rebuilt - H).cwiseAbs().maxCoeff() <= tolerance<Scalar, N>(size * Scalar(N)));
+    CHECK((gram - Square<Scalar, N>::Identity()).cwiseAbs().maxCoeff() <= tolerance<Scalar, N>(Scalar(1)));
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("random symmetric matrices are decomposed", Scalar, float, double) {
+    RandomGenerator random(1);
+    for (int sample = 0; sample < 200; ++sample) {
+        check<Scalar, 3>(random_symmetric<Scalar, 3>(random));
+        check<Scalar, 9>(random_symmetric<Scalar, 9>(random));
+    }
+}
+
+TEST_CASE_TEMPLATE("a known spectrum is found, repeated and zero eigenvalues included", Scalar, float, double) {
+    RandomGenerator random(2);
+    const std::array<double, 9> spectrum{-3, -3, -1, 0, 0, 0, 2, 2, 7};
+    for (int sample = 0; sample < 50; ++sample) {
+        const Square<Scalar, 9> H = with_spectrum<Scalar, 9>(spectrum, random);
+        check<Scalar, 9>(H);
+        Eigen::Matrix<Scalar, 9, 1> values = symmetric_eigen<Scalar, 9>(H).values;
+        std::sort(values.data(), values.data() + 9);
+        for (std::size_t k = 0; k < 9; ++k) {
+            CHECK(std::abs(values(Index(k)) - Scalar(spectrum[k])) <= tolerance<Scalar, 9>(Scalar(7)));
+        }
+    }
+}
+
+TEST_CASE_TEMPLATE("special matrices", Scalar, float, double) {
+    check<Scalar, 3>(Square<Scalar, 3>::Zero());
+    check<Scalar, 3>(Square<Scalar, 3>::Identity());
+    check<Scalar, 3>(Square<Scalar, 3>::Ones());
+    check<Scalar, 3>(Square<Scalar, 3>(Vector3<Scalar>(3, -1, 2).asDiagonal()));
+    const SymmetricEigen<Scalar, 3> diagonal =
+        symmetric_eigen<Scalar, 3>(Square<Scalar, 3>(Vector3<Scalar>(3, -1, 2).asDiagonal()));
+    CHECK(diagonal.values == Vector3<Scalar>(3, -1, 2));
+    CHECK(diagonal.vectors == Square<Scalar, 3>::Identity());
+    // sizes whose squares leave the range
+    const Scalar huge = std::sqrt(std::numeric_limits<Scalar>::max());
+    check<Scalar, 3>(huge * Square<Scalar, 3>::Ones());
+    check<Scalar, 3>(Square<Scalar, 3>::Ones() / huge);
+}
+
+TEST_CASE_TEMPLATE("only the lower triangle is read", Scalar, float, double) {
+    RandomGenerator random(3);
+    const Square<Scalar, 9> H = random_symmetric<Scalar, 9>(random);
+    Square<Scalar, 9> lower = H;
+    for (int j = 1; j < 9; ++j) {
+        lower.col(j).head(j).setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    }
+    const SymmetricEigen<Scalar, 9> a = symmetric_eigen<Scalar, 9>(H), b = symmetric_eigen<Scalar, 9>(lower);
+    CHECK(a.values == b.values);
+    CHECK(a.vectors == b.vectors);
+}
+
+TEST_CASE("small eigenvalues of a graded matrix keep their relative accuracy") {
+    // D (I + 0.1 (11^T - I)) D, D = diag(1, 1e-6, 1e-12): eigenvalues of about 1, 1e-12, 1e-24
+    const Vector3<double> D(1, 1e-6, 1e-12);
+    Square<double, 3> C = Square<double, 3>::Constant(0.1);
+    C.diagonal().setOnes();
+    Vector3<double> values = symmetric_eigen<double, 3>(D.asDiagonal() * C * D.asDiagonal()).values;
+    std::sort(values.data(), values.data() + 3);
+    // the smallest is det(C) / det of the leading 2x2 block of C, times 1e-24, up to a relative 1e-12
+    const double expected = C.determinant() / (1 - 0.01) * 1e-24;
+    CHECK(std::abs(values(0) / expected - 1) < 1e-10);
+}
