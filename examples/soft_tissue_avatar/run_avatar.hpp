@@ -66,7 +66,8 @@ double static_pose_error(const Settings& settings, const Scene& scene, const Thr
     const Pose<Scalar>& pose = strongest_pose(scene.motion);
     avatar.start(pose);
     const SolveReport<Scalar> report =
-        avatar.settle(pose, {}, [](const NewtonProgress<Scalar>&) { return !is_interrupted(); });
+        avatar.settle(pose, {.max_iterations = 60, .step_tolerance = 1e-6},
+                      [](const NewtonProgress<Scalar>&) { return !is_interrupted(); });
     const double error = (avatar.positions() - avatar.skinned()).colwise().norm().maxCoeff();
     std::fprintf(stderr, "static pose, %-10s frame: %s after %d iterations, %.3g mm from the skinned body\n", frame,
                  to_string(report.status), report.iterations, 1e3 * error);

@@ -114,11 +114,12 @@ TEST_CASE("pose correctives: bent and twisted joints keep their volume better th
         Index joint;
         Vector3<double> axis;
     };
-    for (const auto& [joint, axis] : {Bend{human_joint::knee, {1.0, 0.0, 0.0}}, Bend{human_joint::hip, {-1.0, 0.0, 0.0}},
-                                      Bend{human_joint::spine2, {0.0, 1.0, 0.0}},
-                                      Bend{human_joint::elbow, {-0.743, -0.669, 0.0}}}) {
+    for (const Bend& bend :
+         {Bend{human_joint::knee, {1.0, 0.0, 0.0}}, Bend{human_joint::hip, {-1.0, 0.0, 0.0}},
+          Bend{human_joint::spine2, {0.0, 1.0, 0.0}}, Bend{human_joint::elbow, {-0.743, -0.669, 0.0}}}) {
+        const Index joint = bend.joint;
         CAPTURE(joint);
-        const Matrix3<double> R = turn(1.2, axis);
+        const Matrix3<double> R = turn(1.2, bend.axis);
         const double lost = rest - enclosed_volume(posed(joint, R, none), body().mesh.faces);
         const double left = rest - enclosed_volume(posed(joint, R, offsets(joint, R)), body().mesh.faces);
         CHECK(lost > 1e-5);  // at least a hundredth of a litre
