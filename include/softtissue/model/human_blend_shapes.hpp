@@ -131,9 +131,19 @@ private:
                 g.root = 0.035 * joints_.col(pelvis);
                 break;
             case mass:
-                set_both(g.thickness, {{pelvis, .009}, {spine1, .010}, {spine2, .009}, {spine3, .007}, {collar, .005},
-                                       {neck, .003}, {head, .001}, {hip, .007}, {knee, .004}, {ankle, .001},
-                                       {shoulder, .005}, {elbow, .0035}, {wrist, .0005}});
+                set_both(g.thickness, {{pelvis, .009},
+                                       {spine1, .010},
+                                       {spine2, .009},
+                                       {spine3, .007},
+                                       {collar, .005},
+                                       {neck, .003},
+                                       {head, .001},
+                                       {hip, .007},
+                                       {knee, .004},
+                                       {ankle, .001},
+                                       {shoulder, .005},
+                                       {elbow, .0035},
+                                       {wrist, .0005}});
                 g.bumps = {{{0.0, 1.03, 0.10}, 0.09, 0.004}};
                 break;
             case leg_length:
@@ -146,15 +156,23 @@ private:
                 move_both(g, shoulder, {0.009, 0.0, 0.0});
                 g.bumps = {{{0.15, 1.30, -0.03}, 0.06, 0.004}};
                 break;
-            case belly: g.bumps = {{{0.0, 1.06, 0.11}, 0.075, 0.007}, {{0.09, 1.05, 0.04}, 0.07, 0.006}}; break;
+            case belly:
+                g.bumps = {{{0.0, 1.06, 0.11}, 0.075, 0.007}, {{0.09, 1.05, 0.04}, 0.07, 0.006}};
+                break;
             case hips:
                 move_both(g, hip, {0.003, 0.0, 0.0});
                 move_both(g, knee, {-0.002, 0.0, 0.0});
                 g.bumps = {{{0.15, 0.90, -0.01}, 0.08, 0.007}, {{0.08, 0.89, -0.12}, 0.06, 0.006}};
                 break;
-            case chest: g.bumps = {{{0.075, 1.28, 0.09}, 0.05, 0.009}, {{0.09, 1.30, -0.10}, 0.08, 0.003}}; break;
-            case arm_length: set_both(g.along, {{shoulder, 0.035}, {elbow, 0.035}, {wrist, 0.03}}); break;
-            case muscle: g = muscle_growth(); break;
+            case chest:
+                g.bumps = {{{0.075, 1.28, 0.09}, 0.05, 0.009}, {{0.09, 1.30, -0.10}, 0.08, 0.003}};
+                break;
+            case arm_length:
+                set_both(g.along, {{shoulder, 0.035}, {elbow, 0.035}, {wrist, 0.03}});
+                break;
+            case muscle:
+                g = muscle_growth();
+                break;
             default:
                 set_both(g.all, {{head, 0.035}});
                 set_both(g.along, {{neck, 0.06}});

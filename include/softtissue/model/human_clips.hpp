@@ -112,8 +112,9 @@ struct Walk {
         const double share = speed_share(t);
         const double lowered = smooth_step(0.0, leave + 0.5 * ramp, t) * smooth_step(duration, arrive - 0.5 * ramp, t);
         const double phase = std::numbers::pi * (t - start) / step_time;  // pi per step
-        stance.root += Vector3<double>(-0.020 * share * std::sin(phase),
-                                       -0.032 * lowered - share * (0.006 + 0.014 * std::cos(2.0 * phase)), travelled(t));
+        stance.root +=
+            Vector3<double>(-0.020 * share * std::sin(phase),
+                            -0.032 * lowered - share * (0.006 + 0.014 * std::cos(2.0 * phase)), travelled(t));
         stance.pelvis = share * Vector3<double>(0.04, 0.09 * std::cos(phase), -0.03 * std::sin(phase));
         stance.spine = share * Vector3<double>(0.0, -0.07 * std::cos(phase), 0.01 * std::sin(phase));
         stance.neck = share * Vector3<double>(-0.02, 0.05 * std::cos(phase), 0.0);
@@ -183,13 +184,15 @@ struct Jump {
         stance.pelvis(0) = 0.42 * bent;
         stance.spine(0) = 0.12 * bent;
         stance.neck(0) = -0.16 * bent;
-        const double up = smooth_step(crouch + 0.02, take_off + 0.10, t) * smooth_step(deepest + 0.05, landing - 0.12, t);
+        const double up =
+            smooth_step(crouch + 0.02, take_off + 0.10, t) * smooth_step(deepest + 0.05, landing - 0.12, t);
         for (HumanStance::Arm& arm : stance.arms) {
             arm.swing += -0.75 * down + 2.0 * up;
             arm.lower += 0.1 * down - 0.15 * up;
             arm.elbow += 0.35 * bent + 0.3 * up;
         }
-        const double heel = smooth_step(crouch + 0.10, take_off + 0.04, t) * smooth_step(landing + 0.12, landing - 0.10, t);
+        const double heel =
+            smooth_step(crouch + 0.10, take_off + 0.04, t) * smooth_step(landing + 0.12, landing - 0.10, t);
         for (HumanStance::Foot& foot : stance.feet) {
             foot.ball(1) = foot_height(t);
             foot.pitch = 0.85 * heel;
@@ -229,12 +232,18 @@ struct Twist {
 }  // namespace detail
 
 /// Four steps forwards, left foot first.
-inline HumanClip human_walk() { return {detail::Walk::duration, &detail::Walk::at}; }
+inline HumanClip human_walk() {
+    return {detail::Walk::duration, &detail::Walk::at};
+}
 
 /// Crouch, flight of 0.41 s, landing.
-inline HumanClip human_jump() { return {detail::Jump::duration, &detail::Jump::at}; }
+inline HumanClip human_jump() {
+    return {detail::Jump::duration, &detail::Jump::at};
+}
 
 /// Turns to both sides, arms flung out.
-inline HumanClip human_twist() { return {detail::Twist::duration, &detail::Twist::at}; }
+inline HumanClip human_twist() {
+    return {detail::Twist::duration, &detail::Twist::at};
+}
 
 }  // namespace softtissue

@@ -7,8 +7,9 @@
 ///             joints beyond it. Across the axis its length shrinks by sqrt(1 - 2 W (1 - W)(1 - cos a)). With
 ///             -sym(R - I) y = (1 - cos a) y_across, the offset
 ///                 d(x) = -c W (1 - W) sym(R_j - I) (x - J_j)
-///             undoes the part c of the shrinkage to second order in a, for every axis. c = 1 would keep distances from the
-///             axis but swell the outside of a bend (as dual quaternions do); c = 0.6 about keeps the volume. Muscles add
+///             undoes the part c of the shrinkage to second order in a, for every axis. c = 1 would keep distances
+///             from the axis but swell the outside of a bend (as dual quaternions do); c = 0.6 about keeps the volume.
+///             Muscles add
 ///                 d(x) = (e . vee(R_j - I)) b(x) n(x),   e . vee = sin a for a turn by a about e.
 /// Shapes      3n x 9 (joints - 1) [m], sparse; column 9 (j - 1) + 3 a + b multiplies (R_j - I)[a, b].
 /// Valid       zero at rest; mirror symmetric.
@@ -22,7 +23,6 @@
 
 #include <Eigen/SparseCore>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>

@@ -136,8 +136,7 @@ private:
         const double bend = std::atan2(q, p) + std::acos(std::clamp(wanted / std::hypot(p, q), -1.0, 1.0));
         const Matrix3<double> knee_turn = about_x(bend);
         const Vector3<double> straight = a + knee_turn * b;
-        const Matrix3<double> hip_turn =
-            Eigen::Quaterniond::FromTwoVectors(straight, target).toRotationMatrix();
+        const Matrix3<double> hip_turn = Eigen::Quaterniond::FromTwoVectors(straight, target).toRotationMatrix();
         const HumanStance::Foot& foot_target = stance.feet[size_t(side)];
         const Matrix3<double> above = turned(stance.pelvis) * hip_turn * knee_turn;
         pose.rotation_vectors.col(hip + side) = rotation_vector(hip_turn);

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace softtissue {
@@ -53,8 +54,8 @@ public:
         const double right = arm(y, w, 1);
         const double arms = left + right;
         double beyond = arms + neck_and_head(x, w, 1.0 - arms);  // C of the joint at hand
-        for (const auto& [joint, low, high] : {Cut{spine3, 1.21, 1.35}, Cut{spine2, 1.10, 1.24},
-                                               Cut{spine1, 0.99, 1.13}}) {
+        for (const auto& [joint, low, high] :
+             {Cut{spine3, 1.21, 1.35}, Cut{spine2, 1.10, 1.24}, Cut{spine1, 0.99, 1.13}}) {
             w(joint) = (1.0 - beyond) * smooth_step(low, high, x(1));
             beyond += w(joint);
         }

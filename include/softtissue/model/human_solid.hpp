@@ -34,10 +34,10 @@ inline std::vector<std::int32_t> human_parents() {
 }
 
 inline std::vector<std::string> human_joint_names() {
-    return {"pelvis",     "left_hip",    "right_hip",    "spine1",       "left_knee",      "right_knee",
-            "spine2",     "left_ankle",  "right_ankle",  "spine3",       "left_foot",      "right_foot",
-            "neck",       "left_collar", "right_collar", "head",         "left_shoulder",  "right_shoulder",
-            "left_elbow", "right_elbow", "left_wrist",   "right_wrist",  "left_hand",      "right_hand"};
+    return {"pelvis",     "left_hip",    "right_hip",    "spine1",      "left_knee",     "right_knee",
+            "spine2",     "left_ankle",  "right_ankle",  "spine3",      "left_foot",     "right_foot",
+            "neck",       "left_collar", "right_collar", "head",        "left_shoulder", "right_shoulder",
+            "left_elbow", "right_elbow", "left_wrist",   "right_wrist", "left_hand",     "right_hand"};
 }
 
 /// The same joint of the other side; itself on the mid-line.
@@ -47,7 +47,9 @@ inline Index mirror_joint(Index joint) {
     return mirrored[size_t(joint)];
 }
 
-inline Vector3<double> mirrored(const Vector3<double>& x) { return {-x(0), x(1), x(2)}; }
+inline Vector3<double> mirrored(const Vector3<double>& x) {
+    return {-x(0), x(1), x(2)};
+}
 
 /// Rest positions of the joints, 3 x 24.
 inline Matrix3X<double> human_rest_joints() {
@@ -70,7 +72,7 @@ inline Matrix3X<double> human_rest_joints() {
     pair(foot, {0.148, 0.022, 0.098});
     pair(collar, {0.060, 1.395, -0.025});
     const Vector3<double> shoulder_at(0.176, 1.408, -0.034);
-    const Vector3<double> arm(0.669, -0.743, 0.0);                                    // 48 degrees down
+    const Vector3<double> arm(0.669, -0.743, 0.0);                                      // 48 degrees down
     const Vector3<double> forearm = Vector3<double>(0.669, -0.743, 0.14).normalized();  // elbow bent by 8 degrees
     pair(shoulder, shoulder_at);
     pair(elbow, shoulder_at + 0.275 * arm);
@@ -86,15 +88,14 @@ public:
 
     double operator()(const Vector3<double>& x) const {
         const Vector3<double> y = mirrored(x);
-        double d = smooth_union(trunk_.distance(x), smooth_union(chest_.distance(x), chest_.distance(y), 0.04), 0.05);
-        d = smooth_union(d, smooth_union(slope_.distance(x), slope_.distance(y), 0.03), 0.035);
-        d = smooth_union(d, smooth_union(buttock_.distance(x), buttock_.distance(y), 0.05), 0.06);
-        d = smooth_union(d, smooth_union(leg(x), leg(y), 0.03), 0.07);
+        double d = smooth_union(trunk(x, y), smooth_union(leg(x), leg(y), 0.03), 0.07);
         d = smooth_union(d, head_and_neck(x, y), 0.03);
         return smooth_union(d, std::min(arm(x), arm(y)), 0.05);
     }
 
 private:
+    static constexpr double far_away = 0.1;  // wider than any blend: parts that far away are not evaluated
+
     explicit HumanSolid(const Matrix3X<double>& J)
         : trunk_({0.0, 0.80, 0.0}, {0.0, 1.50, 0.0}, {0.0, 0.0, 1.0}, trunk_sections(), 0.75),
           chest_{{0.070, 1.300, 0.046}, {0.084, 0.072, 0.042}},
@@ -102,15 +103,23 @@ private:
           buttock_{{0.075, 0.892, -0.058}, {0.085, 0.098, 0.074}},
           thigh_(J.col(human_joint::hip), J.col(human_joint::knee), {0.0, 0.0, 1.0}, thigh_sections()),
           shank_(J.col(human_joint::knee), J.col(human_joint::ankle), {0.0, 0.0, 1.0}, shank_sections()),
-          upper_arm_(J.col(human_joint::shoulder), J.col(human_joint::elbow), {0.0, 0.0, 1.0},
-                     upper_arm_sections()),
+          upper_arm_(J.col(human_joint::shoulder), J.col(human_joint::elbow), {0.0, 0.0, 1.0}, upper_arm_sections()),
           forearm_(J.col(human_joint::elbow), J.col(human_joint::wrist), {0.0, 0.0, 1.0}, forearm_sections()),
           hand_(J.col(human_joint::wrist), J.col(human_joint::hand), {0.0, 0.0, 1.0}, hand_sections()),
           thumb_(thumb(J)) {}
 
+    double trunk(const Vector3<double>& x, const Vector3<double>& y) const {
+        if (x(1) < 0.68 || x(1) > 1.62) {
+            return far_away;
+        }
+        double d = smooth_union(trunk_.distance(x), smooth_union(chest_.distance(x), chest_.distance(y), 0.04), 0.05);
+        d = smooth_union(d, smooth_union(slope_.distance(x), slope_.distance(y), 0.03), 0.035);
+        return smooth_union(d, smooth_union(buttock_.distance(x), buttock_.distance(y), 0.05), 0.06);
+    }
+
     double leg(const Vector3<double>& x) const {
         if (x(0) < -0.1 || x(1) > 1.05) {
-            return 0.1;
+            return far_away;
         }
         const double limb = smooth_union(thigh_.distance(x), shank_.distance(x), 0.03);
         return x(1) > 0.25 ? limb : smooth_union(limb, foot(x), 0.03);
@@ -124,8 +133,8 @@ private:
     }
 
     double arm(const Vector3<double>& x) const {
-        if (x(0) < 0.02) {
-            return 0.1;
+        if (x(0) < 0.02 || x(1) < 0.78) {
+            return far_away;
         }
         const double limb = smooth_union(upper_arm_.distance(x), forearm_.distance(x), 0.02);
         return smooth_union(limb, smooth_union(hand_.distance(x), thumb_.distance(x), 0.014), 0.02);
@@ -133,7 +142,7 @@ private:
 
     double head_and_neck(const Vector3<double>& x, const Vector3<double>& y) const {
         if (x(1) < 1.30) {
-            return 0.1;
+            return far_away;
         }
         double d = smooth_union(cranium_.distance(x), face_.distance(x), 0.03);
         d = smooth_union(d, jaw_.distance(x), 0.025);
@@ -158,16 +167,16 @@ private:
                 {0.98, 0.062, 0.062, 0.048, 0.056, -0.034}};
     }
     static std::vector<TubeSection> thigh_sections() {
-        return {{-0.10, 0.080, 0.060, 0.075, 0.070}, {0.05, 0.088, 0.076, 0.086, 0.084, -0.002},
+        return {{-0.10, 0.080, 0.060, 0.075, 0.070},        {0.05, 0.088, 0.076, 0.086, 0.084, -0.002},
                 {0.18, 0.087, 0.080, 0.088, 0.084, -0.004}, {0.35, 0.080, 0.076, 0.085, 0.078, -0.004},
-                {0.55, 0.068, 0.067, 0.074, 0.067},  {0.75, 0.058, 0.059, 0.063, 0.056},
-                {0.90, 0.052, 0.053, 0.056, 0.049},  {1.00, 0.049, 0.051, 0.053, 0.047}};
+                {0.55, 0.068, 0.067, 0.074, 0.067},         {0.75, 0.058, 0.059, 0.063, 0.056},
+                {0.90, 0.052, 0.053, 0.056, 0.049},         {1.00, 0.049, 0.051, 0.053, 0.047}};
     }
     static std::vector<TubeSection> shank_sections() {
-        return {{-0.04, 0.048, 0.050, 0.052, 0.047}, {0.08, 0.049, 0.051, 0.048, 0.052},
+        return {{-0.04, 0.048, 0.050, 0.052, 0.047},        {0.08, 0.049, 0.051, 0.048, 0.052},
                 {0.20, 0.051, 0.053, 0.044, 0.062, -0.004}, {0.32, 0.051, 0.053, 0.042, 0.064, -0.006},
                 {0.48, 0.044, 0.046, 0.039, 0.052, -0.004}, {0.65, 0.036, 0.037, 0.036, 0.040},
-                {0.82, 0.031, 0.031, 0.033, 0.036},  {0.94, 0.032, 0.031, 0.034, 0.038},
+                {0.82, 0.031, 0.031, 0.033, 0.036},         {0.94, 0.032, 0.031, 0.034, 0.038},
                 {1.02, 0.033, 0.033, 0.036, 0.040}};
     }
     static std::vector<TubeSection> upper_arm_sections() {
@@ -184,8 +193,8 @@ private:
     }
     // t = 1 is the hand joint, 0.09 m from the wrist; the finger tips are at 0.185 m.
     static std::vector<TubeSection> hand_sections() {
-        return {{-0.05, 0.020, 0.020, 0.027, 0.027}, {0.25, 0.016, 0.020, 0.034, 0.033},
-                {0.60, 0.015, 0.018, 0.041, 0.038},  {1.00, 0.014, 0.016, 0.042, 0.040},
+        return {{-0.05, 0.020, 0.020, 0.027, 0.027},     {0.25, 0.016, 0.020, 0.034, 0.033},
+                {0.60, 0.015, 0.018, 0.041, 0.038},      {1.00, 0.014, 0.016, 0.042, 0.040},
                 {1.45, 0.012, 0.013, 0.038, 0.038, 0.0}, {1.80, 0.010, 0.011, 0.031, 0.033, 0.0},
                 {1.96, 0.009, 0.009, 0.022, 0.024, 0.0}};
     }

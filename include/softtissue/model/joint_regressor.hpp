@@ -3,10 +3,12 @@
 /// Finds sparse rows that give a body's joints as weighted means of vertices, for all its shapes.
 ///
 /// What        per joint the nearest vertices in all eight octants; their weights are the smallest ones (weighted by
-///             nearness) that sum to one, give the joint in the rest shape exactly and, as well as they can, its displacement along
-///             each shape direction.
-/// Equation    r = O M^T (M O M^T + E)^-1 t: rows of M are 1, x, y, z (E = 0) and the shapes' x, y, z (E = tolerance^2).
-/// Shapes      joints 3 x m; vertices 3 x n; joint_displacements 3 x m per shape; directions 3n x shapes; returns m x n.
+///             nearness) that sum to one, give the joint in the rest shape exactly and, as well as they can, its
+///             displacement along each shape direction.
+/// Equation    r = O M^T (M O M^T + E)^-1 t: O the nearness; rows of M are 1, x, y, z (E = 0) and the shapes' x, y, z
+///             (E = tolerance^2 times the sum of O).
+/// Shapes      vertices 3 x n; joints 3 x m; directions 3n x shapes; joint_displacements 3 x m per shape;
+///             result m x n.
 /// Valid       joints with vertices on all sides. Weights may be negative.
 /// Tests       tests/unit/model/joint_regressor_test.cpp
 #pragma once
@@ -68,7 +70,8 @@ public:
 
 private:
     /// (distance, vertex) of the nearest vertices in each of the eight octants around the joint.
-    std::vector<std::pair<double, Index>> nearest(const Matrix3X<double>& vertices, const Vector3<double>& joint) const {
+    std::vector<std::pair<double, Index>> nearest(const Matrix3X<double>& vertices,
+                                                  const Vector3<double>& joint) const {
         std::array<std::vector<std::pair<double, Index>>, 8> octants;
         for (Index v = 0; v < vertices.cols(); ++v) {
             const Vector3<double> d = vertices.col(v) - joint;

@@ -55,8 +55,8 @@ private:
     using Point = std::array<int, 3>;
 
     void cube(const Point& p) {
-        constexpr std::array<std::array<int, 3>, 6> orders{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1},
-                                                            {2, 1, 0}}};
+        constexpr std::array<std::array<int, 3>, 6> orders{
+            {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
         for (const std::array<int, 3>& order : orders) {
             std::array<Point, 4> corners{p, p, p, p};
             for (size_t c = 1; c < 4; ++c) {
@@ -124,9 +124,7 @@ private:
         return (size_t(p[2]) * size_t(counts_[1]) + size_t(p[1])) * size_t(counts_[0]) + size_t(p[0]);
     }
     double value(const Point& p) const { return values_[number(p)]; }
-    Vector3<double> position(const Point& p) const {
-        return corner_ + spacing_ * Vector3<double>(p[0], p[1], p[2]);
-    }
+    Vector3<double> position(const Point& p) const { return corner_ + spacing_ * Vector3<double>(p[0], p[1], p[2]); }
 
     Vector3<double> corner_;
     double spacing_;

@@ -29,7 +29,9 @@ inline double smooth_union(double a, double b, double blend) {
 }
 
 /// Intersection of two distances, rounded over `blend` metres.
-inline double smooth_intersection(double a, double b, double blend) { return -smooth_union(-a, -b, blend); }
+inline double smooth_intersection(double a, double b, double blend) {
+    return -smooth_union(-a, -b, blend);
+}
 
 /// Ellipsoid with axes along the columns of `axes` (a rotation).
 struct Ellipsoid {
@@ -142,11 +144,14 @@ private:
         const double basis1 = r * (1.0 - r) * (1.0 - r) * h / (s1.t - before.t);
         const double basis2 = r * r * (r - 1.0) * h / (after.t - s0.t);
         const auto blend = [&](double TubeSection::*m) {
-            return basis0 * s0.*m + (1.0 - basis0) * s1.*m + basis1 * (s1.*m - before.*m) +
-                   basis2 * (after.*m - s0.*m);
+            return basis0 * s0.*m + (1.0 - basis0) * s1.*m + basis1 * (s1.*m - before.*m) + basis2 * (after.*m - s0.*m);
         };
-        return {t, blend(&TubeSection::outer), blend(&TubeSection::inner), blend(&TubeSection::front),
-                blend(&TubeSection::back), blend(&TubeSection::shift)};
+        return {t,
+                blend(&TubeSection::outer),
+                blend(&TubeSection::inner),
+                blend(&TubeSection::front),
+                blend(&TubeSection::back),
+                blend(&TubeSection::shift)};
     }
 
     Vector3<double> origin_;
@@ -159,7 +164,8 @@ private:
     double roundness_;
 };
 
-/// Value and gradient of a distance at x, from four samples on a tetrahedron: errors of second and of first order in `step`.
+/// Value and gradient of a distance at x, from four samples on a tetrahedron around it: errors of second and of first
+/// order in `step`.
 struct DistanceSample {
     double value;
     Vector3<double> gradient;
@@ -167,8 +173,8 @@ struct DistanceSample {
 
 template <class Distance>
 DistanceSample sample_distance(const Distance& distance, const Vector3<double>& x, double step = 1e-5) {
-    static const std::array<Vector3<double>, 4> corners{
-        Vector3<double>(1, -1, -1), Vector3<double>(-1, -1, 1), Vector3<double>(-1, 1, -1), Vector3<double>(1, 1, 1)};
+    static const std::array<Vector3<double>, 4> corners{Vector3<double>(1, -1, -1), Vector3<double>(-1, -1, 1),
+                                                        Vector3<double>(-1, 1, -1), Vector3<double>(1, 1, 1)};
     DistanceSample sample{0.0, Vector3<double>::Zero()};
     for (const Vector3<double>& e : corners) {
         const double f = distance(Vector3<double>(x + step * e));

@@ -17,8 +17,7 @@ namespace {
 struct Shaped {
     HumanMesh mesh = make_human_mesh();
     HumanBlendShapes shapes{human_rest_joints()};
-    MatrixX<double> directions =
-        shapes.displacement(mesh, HumanSkinning(human_rest_joints()).weights(mesh));
+    MatrixX<double> directions = shapes.displacement(mesh, HumanSkinning(human_rest_joints()).weights(mesh));
 
     Matrix3X<double> with(const VectorX<double>& betas) const {
         const VectorX<double> d = directions * betas;

@@ -20,7 +20,9 @@ VectorX<double> numbers(const HumanStance& s) {
     return v;
 }
 
-std::array<HumanClip, 3> clips() { return {human_walk(), human_jump(), human_twist()}; }
+std::array<HumanClip, 3> clips() {
+    return {human_walk(), human_jump(), human_twist()};
+}
 
 }  // namespace
 
@@ -95,8 +97,7 @@ TEST_CASE("jump: the pelvis flies on a parabola") {
     int airborne = 0;
     for (double t = h; t < jump.duration - h; t += h) {
         if (jump.at(t - h).feet[0].ball(1) > 0.0 && jump.at(t + h).feet[0].ball(1) > 0.0) {
-            const double a =
-                (jump.at(t + h).root(1) - 2.0 * jump.at(t).root(1) + jump.at(t - h).root(1)) / (h * h);
+            const double a = (jump.at(t + h).root(1) - 2.0 * jump.at(t).root(1) + jump.at(t - h).root(1)) / (h * h);
             CHECK(a == doctest::Approx(-9.81).epsilon(1e-6));
             ++airborne;
         }

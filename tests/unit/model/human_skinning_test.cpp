@@ -75,8 +75,7 @@ TEST_CASE("human skinning: no weight leaps from limb to limb through the air") {
                   doctest::Approx(1.0));
         }
         if (x(0) > 0.3) {  // left arm
-            CHECK(s.weights(shoulder, v) + s.weights(elbow, v) + s.weights(wrist, v) + s.weights(hand, v) >
-                  0.99);
+            CHECK(s.weights(shoulder, v) + s.weights(elbow, v) + s.weights(wrist, v) + s.weights(hand, v) > 0.99);
         }
         if (x(1) > 0.85 && x(1) < 1.1 && std::abs(x(0)) < 0.25) {  // hips and waist
             CHECK(s.weights(shoulder, v) + s.weights(shoulder + 1, v) == 0.0);

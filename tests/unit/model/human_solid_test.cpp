@@ -30,8 +30,8 @@ TEST_CASE("human joints: SMPL's tree and names, mirrored in pairs, inside the bo
 TEST_CASE("HumanSolid: symmetric, outside in the gaps a body has, soles on the floor") {
     const HumanSolid solid;
     CHECK(solid({0.0, 1.0, 0.0}) < 0.0);
-    CHECK(solid({0.0, 0.6, 0.0}) > 0.02);    // between the legs
-    CHECK(solid({0.26, 1.1, 0.0}) > 0.02);   // between arm and flank
+    CHECK(solid({0.0, 0.6, 0.0}) > 0.02);   // between the legs
+    CHECK(solid({0.26, 1.1, 0.0}) > 0.02);  // between arm and flank
     CHECK(solid({0.0, 1.6, 0.3}) > 0.05);
     CHECK(solid({0.14, -0.004, 0.05}) > 0.0);
     CHECK(solid({0.14, 0.004, 0.05}) < 0.0);

@@ -54,7 +54,9 @@ TEST_CASE("marching_tetrahedra: manifold for a function without any sense") {
 }
 
 TEST_CASE("marching_tetrahedra: values of exactly zero count as outside and stay manifold") {
-    const auto plane = [](const Vector3<double>& x) { return std::max({x(0) - 2.0, x(1) - 2.0, x(2) - 2.0, -x.sum()}); };
+    const auto plane = [](const Vector3<double>& x) {
+        return std::max({x(0) - 2.0, x(1) - 2.0, x(2) - 2.0, -x.sum()});
+    };
     const SurfaceMesh mesh = marching_tetrahedra(plane, {-6.0, -6.0, -6.0}, 1.0, {10, 10, 10});
     CHECK(mesh.triangles.size() > 0);
     CHECK(surface_topology(mesh).is_closed());

@@ -82,7 +82,8 @@ TEST_CASE("procedural_human: two calls give the same bits, and float is the roun
     CHECK(body<float>().template_vertices == a.template_vertices.cast<float>());
 }
 
-TEST_CASE("procedural_human: every vertex of torso and limbs has a direction that sees its triangles within 60 degrees") {
+TEST_CASE(
+    "procedural_human: every vertex of torso and limbs has a direction that sees its triangles within 60 degrees") {
     const SmplBody<double>& b = body<double>();
     const MatrixX<double> w = b.weights.dense();
     const Matrix3X<double> normals = triangle_normals(b.template_vertices, b.faces);

@@ -66,10 +66,10 @@ TEST_CASE("procedural_motion: human speeds and accelerations, within the limits 
     for (size_t t = 1; t + 1 < x.size(); ++t) {
         const auto& rotations = motion.poses;
         speed = std::max(speed, (x[t + 1] - x[t - 1]).colwise().norm().maxCoeff() * 60.0);
-        acceleration =
-            std::max(acceleration, (x[t + 1] - 2.0 * x[t] + x[t - 1]).colwise().norm().maxCoeff() * 14400.0);
-        turning = std::max(turning, (rotations[t + 1].rotation_vectors - rotations[t - 1].rotation_vectors)
-                                            .colwise().norm().maxCoeff() * 60.0);
+        acceleration = std::max(acceleration, (x[t + 1] - 2.0 * x[t] + x[t - 1]).colwise().norm().maxCoeff() * 14400.0);
+        turning = std::max(
+            turning,
+            (rotations[t + 1].rotation_vectors - rotations[t - 1].rotation_vectors).colwise().norm().maxCoeff() * 60.0);
         for (const Index knee : {human_joint::knee, human_joint::knee + 1}) {
             CHECK(rotations[t].rotation_vectors(0, knee) > -1e-6);
             CHECK(rotations[t].rotation_vectors(0, knee) < 2.2);

@@ -36,7 +36,7 @@ TEST_CASE("smooth_union: symmetric, at most the minimum, equal to it beyond the 
 
 TEST_CASE("smooth_union: second derivative is continuous where the branches meet") {
     const auto f = [](double t) { return smooth_union(t, 0.0, 0.1); };
-    // |f'''| <= 6 / (6 k^2) = 100: across a step of 2e-4 the curvature of a C2 function moves by at most 0.02 + rounding.
+    // |f'''| <= 1 / k^2 = 100: across a step of 2e-4 the curvature of a C2 function moves by 0.02, rounding adds 1e-8.
     for (const double t : {-0.1, 0.0, 0.1}) {
         CHECK(std::abs(second_derivative(f, t + 1e-4, 1e-4) - second_derivative(f, t - 1e-4, 1e-4)) < 0.05);
     }
@@ -62,8 +62,9 @@ TEST_CASE("TaperedCapsule: radii at its ends and round caps") {
 
 TEST_CASE("Tube: half widths of its sections, in all four directions and at the ends") {
     // Axis along -y, front +z: the side direction is +x.
-    const Tube tube({0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0},
-                    {{0.0, 0.10, 0.08, 0.06, 0.05}, {0.5, 0.12, 0.09, 0.07, 0.06, 0.01}, {1.0, 0.10, 0.08, 0.06, 0.05}});
+    const Tube tube(
+        {0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0},
+        {{0.0, 0.10, 0.08, 0.06, 0.05}, {0.5, 0.12, 0.09, 0.07, 0.06, 0.01}, {1.0, 0.10, 0.08, 0.06, 0.05}});
     const double exact = 1e-12;
     CHECK(std::abs(tube.distance({0.10, 1.0, 0.0})) < exact);
     CHECK(std::abs(tube.distance({-0.08, 1.0, 0.0})) < exact);
