@@ -13,11 +13,11 @@
 namespace softtissue_test {
 
 struct SurfaceTopology {
-    int vertices = 0;   // used by a triangle
+    int vertices = 0;  // used by a triangle
     int edges = 0;
     int triangles = 0;
-    int boundary = 0;   // edges with one triangle
-    int bad = 0;        // edges run through twice in the same direction
+    int boundary = 0;  // edges with one triangle
+    int bad = 0;       // edges run through twice in the same direction
 
     int euler() const { return vertices - edges + triangles; }
     bool is_closed() const { return boundary == 0 && bad == 0; }
