@@ -17,6 +17,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,7 +32,11 @@ struct InwardDirection {
 /// c(u): the smallest cosine between the inward direction `u` and the inward normals.
 template <RealScalar S>
 S smallest_cosine(const Matrix3X<S>& normals, const Vector3<S>& u) {
-    return -(normals.transpose() * u).maxCoeff();
+    S largest = normals.col(0).dot(u);
+    for (Index k = 1; k < normals.cols(); ++k) {
+        largest = std::max(largest, normals.col(k).dot(u));
+    }
+    return -largest;
 }
 
 /// The unit direction of the largest c(u), and that value (not positive: there is no valid direction).
