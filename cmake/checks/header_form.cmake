@@ -1,14 +1,9 @@
 # Checks what every header has and has not.   cmake -D INCLUDE_DIR=<include> -P header_form.cmake
 cmake_minimum_required(VERSION 3.24)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 
 set(longest_header 300)
-
-set(failed FALSE)
-function(report text)
-    message(NOTICE "${text}")
-    set(failed TRUE PARENT_SCOPE)
-endfunction()
 
 softtissue_list_headers(headers "${INCLUDE_DIR}")
 foreach(header IN LISTS headers)
@@ -38,8 +33,5 @@ foreach(header IN LISTS headers)
     endif()
 endforeach()
 
-if(failed)
-    message(FATAL_ERROR "headers must keep the house form")
-endif()
 list(LENGTH headers count)
-message(STATUS "${count} headers keep the house form")
+conclude("headers must keep the house form" "${count} headers keep the house form")

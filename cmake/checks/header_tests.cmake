@@ -2,15 +2,10 @@
 #   cmake -D ROOT=<repository> -P header_tests.cmake
 cmake_minimum_required(VERSION 3.24)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 
 # The umbrella, and the concepts: their assertions, both ways, stand in the tests of the types that model them.
 set(exceptions "^softtissue/(softtissue|[a-z]+/concepts)\\.hpp$")
-
-set(failed FALSE)
-function(report text)
-    message(NOTICE "${text}")
-    set(failed TRUE PARENT_SCOPE)
-endfunction()
 
 softtissue_list_headers(headers "${ROOT}/include")
 foreach(header IN LISTS headers)
@@ -28,8 +23,5 @@ foreach(header IN LISTS headers)
     endforeach()
 endforeach()
 
-if(failed)
-    message(FATAL_ERROR "every header has a test, and names no other")
-endif()
 list(LENGTH headers count)
-message(STATUS "${count} headers have their tests")
+conclude("every header has a test, and names no other" "${count} headers have their tests")

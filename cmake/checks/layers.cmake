@@ -1,6 +1,7 @@
 # Checks that includes run downwards only.   cmake -D INCLUDE_DIR=<include> -P layers.cmake
 cmake_minimum_required(VERSION 3.24)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 
 set(floor_0 core)
 set(floor_1 linalg sparse)
@@ -19,12 +20,6 @@ endforeach()
 # Of one floor, the systems stand on the anatomy that prepares their bodies.
 set(neighbours_of_avatar anatomy)
 set(neighbours_of_ndg anatomy)
-
-set(failed FALSE)
-function(report text)
-    message(NOTICE "${text}")
-    set(failed TRUE PARENT_SCOPE)
-endfunction()
 
 softtissue_list_headers(headers "${INCLUDE_DIR}")
 foreach(header IN LISTS headers)
@@ -50,8 +45,5 @@ foreach(header IN LISTS headers)
     endforeach()
 endforeach()
 
-if(failed)
-    message(FATAL_ERROR "includes must run downwards, or stay in their folder")
-endif()
 list(LENGTH headers count)
-message(STATUS "${count} headers: includes run downwards only")
+conclude("includes must run downwards, or stay in their folder" "${count} headers: includes run downwards only")

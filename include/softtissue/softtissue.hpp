@@ -97,3 +97,4 @@
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/block_pattern.hpp>
 #include <softtissue/sparse/concepts.hpp>
+#include <softtissue/sparse/default_cholesky.hpp>

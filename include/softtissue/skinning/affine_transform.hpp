@@ -9,21 +9,9 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/cofactor.hpp>
 
 namespace softtissue {
-
-/// d det(A) / dA: the transposed adjugate; A^-1 = cofactors(A)^T / det(A), defined for singular A too.
-template <FieldScalar S>
-Matrix3<S> cofactors(const Matrix3<S>& A) {
-    Matrix3<S> result;
-    for (int row = 0; row < 3; ++row) {
-        for (int col = 0; col < 3; ++col) {
-            const int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (col + 1) % 3, c2 = (col + 2) % 3;
-            result(row, col) = A(r1, c1) * A(r2, c2) - A(r1, c2) * A(r2, c1);
-        }
-    }
-    return result;
-}
 
 template <FieldScalar S>
 struct AffineTransform {
@@ -42,9 +30,8 @@ struct AffineTransform {
 
     /// x -> A^-1 (x - t). Not finite where A is singular; skinning/inverse.hpp measures how near that is.
     AffineTransform inverse() const {
-        const Matrix3<Scalar> C = cofactors(linear);
-        const Scalar det = C.col(0).dot(linear.col(0));
-        const Matrix3<Scalar> inverse_linear = C.transpose() / det;
+        const Matrix3<Scalar> cof = cofactor(linear);
+        const Matrix3<Scalar> inverse_linear = cof.transpose() / determinant(linear, cof);
         return {inverse_linear, -(inverse_linear * translation)};
     }
 };

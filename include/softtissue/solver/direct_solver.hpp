@@ -13,14 +13,9 @@
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/block_pattern.hpp>
 #include <softtissue/sparse/concepts.hpp>
-
-#include <Eigen/SparseCholesky>
+#include <softtissue/sparse/default_cholesky.hpp>
 
 namespace softtissue {
-
-/// Eigen's LL^T with the approximate minimum degree ordering.
-template <RealScalar S>
-using DefaultCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<S>, Eigen::Lower>;
 
 template <RealScalar S, SparseCholesky<S> Cholesky = DefaultCholesky<S>>
 class DirectSolver {

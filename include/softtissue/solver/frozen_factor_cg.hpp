@@ -15,9 +15,9 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/solver/concepts.hpp>
-#include <softtissue/solver/direct_solver.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/concepts.hpp>
+#include <softtissue/sparse/default_cholesky.hpp>
 
 #include <cmath>
 
@@ -32,7 +32,10 @@ public:
     static constexpr int max_iterations = 400;
 
     /// Factors K0; false if it is not positive definite.
-    bool factorize(const BlockMatrix<Scalar>& K0) { return factor_.factorize(K0); }
+    bool factorize(const BlockMatrix<Scalar>& K0) {
+        factor_.compute(K0.matrix());
+        return factor_.info() == Eigen::Success;
+    }
 
     /// Q, one 3x3 map per free vertex; empty for the identity.
     Matrix3X<Scalar>& maps() { return maps_; }
@@ -68,7 +71,7 @@ public:
 private:
     void precondition() {
         if (maps_.cols() == 0) {
-            z_ = factor_.factor().solve(residual_);
+            z_ = factor_.solve(residual_);
             return;
         }
         mapped_.resize(residual_.size());
@@ -76,14 +79,14 @@ private:
             mapped_.template segment<3>(3 * v) =
                 maps_.template middleCols<3>(3 * v).transpose() * residual_.template segment<3>(3 * v);
         }
-        z_ = factor_.factor().solve(mapped_);
+        z_ = factor_.solve(mapped_);
         for (Index v = 0; 3 * v < residual_.size(); ++v) {
             z_.template segment<3>(3 * v) =
                 (maps_.template middleCols<3>(3 * v) * z_.template segment<3>(3 * v)).eval();
         }
     }
 
-    DirectSolver<Scalar, Cholesky> factor_;
+    Cholesky factor_;
     Matrix3X<Scalar> maps_;
     VectorX<Scalar> residual_, z_, direction_, product_, mapped_;
 };

@@ -34,21 +34,3 @@ TEST_CASE_TEMPLATE("the inverse takes points back, also through a mirror", S, fl
         CHECK((T.inverse()(T(x)) - x).norm() <= S(1000) * std::numeric_limits<S>::epsilon());
     }
 }
-
-TEST_CASE_TEMPLATE("cofactors are the derivative of the determinant, also of a singular matrix", S, float, double) {
-    using D = Dual<S, 9>;
-    Matrix3<S> A;
-    A << 1, 2, 3, 2, 4, 6, 1, 0, 5;  // rank 2
-    Matrix3<D> seeded;
-    for (int i = 0; i < 9; ++i) {
-        seeded(i) = D::variable(A(i), i);
-    }
-    const D det = seeded(0, 0) * (seeded(1, 1) * seeded(2, 2) - seeded(1, 2) * seeded(2, 1)) -
-                  seeded(0, 1) * (seeded(1, 0) * seeded(2, 2) - seeded(1, 2) * seeded(2, 0)) +
-                  seeded(0, 2) * (seeded(1, 0) * seeded(2, 1) - seeded(1, 1) * seeded(2, 0));
-    const Matrix3<S> C = cofactors(A);
-    for (int i = 0; i < 9; ++i) {
-        CHECK(C(i) == det.derivative[size_t(i)]);
-    }
-    CHECK(A.col(0).dot(C.col(0)) == S(0));
-}
