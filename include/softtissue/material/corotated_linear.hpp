@@ -40,6 +40,14 @@ public:
         require(orientation > RealOf<Scalar>(0), "det rotation = ", orientation, ", expected +1");
     }
 
+    /// For data that was checked before: nothing is.
+    static CorotatedLinear unchecked(const Parameters& parameters, const Matrix3<Scalar>& rotation) {
+        CorotatedLinear result;
+        result.lame_ = parameters;
+        result.rotation_ = rotation;
+        return result;
+    }
+
     /// The law of (E, nu) in the frame `rotation`.
     static CorotatedLinear from_young_poisson(const YoungPoisson<Scalar>& constants, const Matrix3<Scalar>& rotation) {
         return CorotatedLinear(lame_parameters(constants), rotation);
@@ -80,6 +88,8 @@ public:
     Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter) const { return hessian(F); }
 
 private:
+    CorotatedLinear() = default;
+
     Matrix3<Scalar> strain(const Matrix3<Scalar>& F) const {
         const Matrix3<Scalar> G = rotation_.transpose() * F;
         Matrix3<Scalar> e = (G + G.transpose()) / Scalar(2);

@@ -47,13 +47,13 @@ void require_poisson_ratio(const Scalar& poisson_ratio, const Name&... name) {
     require(value > Real(-1) && value < Real(0.5), name..., " = ", value, ", expected > -1 and < 0.5");
 }
 
-/// Refuses Lamé's parameters whose energy is not positive definite.
-template <FieldScalar Scalar>
-void require_positive_definite(const LameParameters<Scalar>& lame) {
+/// Refuses Lamé's parameters whose energy is not positive definite; `where...` precedes the names in the message.
+template <FieldScalar Scalar, class... Where>
+void require_positive_definite(const LameParameters<Scalar>& lame, const Where&... where) {
     using Real = RealOf<Scalar>;
-    require_positive_modulus(lame.mu, "mu");
+    require_positive_modulus(lame.mu, where..., "mu");
     const Real lambda = value_of(lame.lambda);
-    require(lambda > Real(-2) / Real(3) * value_of(lame.mu) && lambda <= std::numeric_limits<Real>::max(),
+    require(lambda > Real(-2) / Real(3) * value_of(lame.mu) && lambda <= std::numeric_limits<Real>::max(), where...,
             "lambda = ", lambda, ", expected > -2/3 mu = ", Real(-2) / Real(3) * value_of(lame.mu), " and finite");
 }
 

@@ -89,6 +89,7 @@ SolveReport<typename ObjectiveType::Scalar> follow_boundary(
         SolveReport<Scalar> report = minimise(objective, linear_solver, moved, newton, observer);
         report.iterations += total.iterations;
         report.filtered_iterations += total.filtered_iterations;
+        report.indefinite_hessians += total.indefinite_hessians;
         report.energy_evaluations += total.energy_evaluations;
         report.linear_iterations += total.linear_iterations;
         total = report;

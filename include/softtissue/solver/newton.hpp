@@ -3,12 +3,15 @@
 /// Newton's method with a backtracking line search, exact where the Hessian is positive definite, filtered where not.
 ///
 /// What        minimises an Objective over the free vertices, in place.
-/// Method      each iteration tries the exact Hessian first; if it is indefinite, the one filtered per stencil. Halving line
-///             search on the energy (Armijo), full step first. Never increases the energy beyond its round-off.
+/// Method      each iteration tries the exact Hessian first; if it is indefinite, the one filtered per stencil. Far from the
+///             minimum the trial is wasted: after a step longer than far_step, and filtered_after_failure times after an
+///             indefinite Hessian, it is left out. Halving line search on the energy (Armijo), full step first. Never
+///             increases the energy beyond its round-off.
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
-///             gradient_tolerance: largest gradient component; or a status that says why not.
+///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
+///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
 /// Refuses     nothing: outcomes are in the SolveReport. Under -ffinite-math-only NaN checks vanish: a compile error.
-/// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter); Nolte et al. 2026, sec. 3.2
+/// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter), 2024b (adaptive filter); Nolte et al. 2026, sec. 3.2
 /// Tests       tests/unit/solver/newton_test.cpp, tests/scenario/static_solve_test.cpp
 #pragma once
 
@@ -34,8 +37,13 @@ struct NewtonOptions {
     int max_iterations = 100;
     S step_tolerance = S(1e-9);       ///< [m]
     S gradient_tolerance = S(0);      ///< [N]; 0: not used
+    S decrement_tolerance = S(0);     ///< g^T H^-1 g / 2 [J]; 0: not used
     S linear_tolerance = S(1e-3);     ///< relative residual asked of iterative linear solvers
     PsdFilter filter = PsdFilter::absolute;
+    /// Clamp in place of `filter` after a step whose decrease the filtered model predicted within one per cent.
+    bool adapts_filter = false;
+    S far_step = std::numeric_limits<S>::infinity();  ///< [m]; infinity: the exact Hessian is always tried
+    int filtered_after_failure = 0;
     int max_halvings = 40;
 };
 
@@ -84,27 +92,35 @@ public:
             if (report_.iterations == options_.max_iterations) {
                 return ended(SolveStatus::iteration_limit);
             }
-            bool is_exact = true;
-            if (!find_direction(is_exact)) {
+            if (!find_direction()) {
                 return ended(SolveStatus::linear_solver_failed);
             }
             const Scalar last_residual = report_.residual;
+            const Scalar step = direction_.cwiseAbs().maxCoeff();
+            report_.decrement = -gradient_.dot(direction_) / Scalar(2);
             const StepOutcome outcome = take_step();
             if (outcome == StepOutcome::none) {
                 return ended(SolveStatus::line_search_stalled);
             }
             refresh_gradient();
-            if (direction_.cwiseAbs().maxCoeff() <= options_.step_tolerance) {
-                return ended(is_exact ? SolveStatus::converged : SolveStatus::saddle_point);
+            const bool is_small = step <= options_.step_tolerance || report_.decrement <= options_.decrement_tolerance;
+            if (is_small && hessian_ == HessianKind::exact) {
+                return ended(SolveStatus::converged);
+            }
+            if (step <= options_.step_tolerance && hessian_ == HessianKind::indefinite) {
+                return ended(SolveStatus::saddle_point);
             }
             if (outcome == StepOutcome::below_resolution && !(report_.residual < last_residual)) {
                 return ended(SolveStatus::precision_limit);
             }
+            plan_next(is_small);
         }
     }
 
 private:
     enum class StepOutcome { decreased, below_resolution, none };
+    /// Of the last direction: filtered without a trial of the exact one, or after that was found indefinite.
+    enum class HessianKind { exact, indefinite, filtered };
 
     SolveReport<Scalar> ended(SolveStatus status) {
         report_.status = status;
@@ -124,17 +140,35 @@ private:
                                : gradient_.sum();
     }
 
-    bool find_direction(bool& is_exact) {
+    bool find_direction() {
         const VectorX<Scalar> rhs = -gradient_;
-        is_exact = solve_with(PsdFilter::none, rhs);
-        if (!is_exact) {
+        hessian_ = HessianKind::filtered;
+        if (filtered_ahead_ == 0) {
+            hessian_ = solve_with(PsdFilter::none, rhs) ? HessianKind::exact : HessianKind::indefinite;
+            filtered_ahead_ = hessian_ == HessianKind::exact ? 0 : options_.filtered_after_failure + 1;
+            report_.indefinite_hessians += hessian_ == HessianKind::exact ? 0 : 1;
+        }
+        if (hessian_ != HessianKind::exact) {
+            --filtered_ahead_;
             ++report_.filtered_iterations;
-            if (!solve_with(options_.filter, rhs)) {
+            if (!solve_with(filter_, rhs)) {
                 return false;
             }
         }
         ++report_.iterations;
         return true;
+    }
+
+    /// Which Hessian comes next; a small step calls for the exact one, which alone can end the solve.
+    void plan_next(bool is_small) {
+        if (is_small) {
+            filtered_ahead_ = 0;
+        } else if (report_.step > options_.far_step) {
+            filtered_ahead_ = std::max(filtered_ahead_, 1);
+        }
+        if (options_.adapts_filter && hessian_ != HessianKind::exact) {
+            filter_ = std::abs(predicted_ratio_ - Scalar(1)) <= Scalar(0.01) ? PsdFilter::clamp : options_.filter;
+        }
     }
 
     bool solve_with(PsdFilter filter, const VectorX<Scalar>& rhs) {
@@ -160,6 +194,7 @@ private:
             const bool is_resolved = -length * slope > energy_resolution();
             if (energy <= report_.energy + sufficient_decrease * length * slope + (is_resolved ? Scalar(0) : energy_resolution())) {
                 d_.swap(trial_);
+                predicted_ratio_ = (energy - report_.energy) / (slope * (length - length * length / Scalar(2)));
                 report_.energy = energy;
                 report_.step = length * direction_.cwiseAbs().maxCoeff();
                 return is_resolved ? StepOutcome::decreased : StepOutcome::below_resolution;
@@ -174,6 +209,10 @@ private:
     const NewtonOptions<Scalar>& options_;
     const Observer& observer_;
     SolveReport<Scalar> report_;
+    PsdFilter filter_ = options_.filter;
+    HessianKind hessian_ = HessianKind::exact;
+    int filtered_ahead_ = std::isfinite(options_.far_step) ? 1 : 0;
+    Scalar predicted_ratio_ = Scalar(0);  // actual over predicted decrease of the last step
     VectorX<Scalar> gradient_, direction_;
     Matrix3X<Scalar> trial_;
 };

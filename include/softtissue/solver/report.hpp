@@ -42,10 +42,12 @@ struct [[nodiscard]] SolveReport {
     SolveStatus status = SolveStatus::iteration_limit;
     int iterations = 0;           ///< Newton iterations: linear systems solved and steps taken
     int filtered_iterations = 0;  ///< of these, with a filtered Hessian
+    int indefinite_hessians = 0;  ///< exact Hessians that were tried and not positive definite
     int energy_evaluations = 0;
     int linear_iterations = 0;    ///< conjugate-gradient iterations; 0 for direct solvers
     S energy = S(0);
     S residual = S(0);
+    S decrement = S(0);           ///< decrease that the last step promised [J]
     S step = S(0);                ///< largest component of the last step
 
     /// The state is a minimum as far as tolerances and precision tell.

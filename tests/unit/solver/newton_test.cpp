@@ -181,6 +181,44 @@ TEST_CASE("the gradient tolerance stops, at the start if it is met there") {
     CHECK(reached.report.residual > 1e-9);
 }
 
+TEST_CASE("the decrement stops an exact step, and is what the step gains") {
+    Solve<double, Exponential<double>> solve({}, 2.0, {.step_tolerance = 0, .decrement_tolerance = 1e-6});
+    CHECK(solve.report.status == SolveStatus::converged);
+    CHECK(solve.report.decrement <= 1e-6);
+    CHECK(solve.report.decrement > 1e-18);
+    CHECK(solve.energies.back() - solve.report.energy == doctest::Approx(solve.report.decrement).epsilon(1e-3));
+    Solve<double, DoubleWell<double>> saddle({}, 1e-6, {.step_tolerance = 0, .decrement_tolerance = 1e-6});
+    CHECK(saddle.report.status == SolveStatus::converged);
+    CHECK(std::abs(std::abs(saddle.d(0, 1)) - 1) < 1e-3);  // a small filtered decrement is no reason to stop
+}
+
+TEST_CASE("far steps are filtered without a trial, near ones are exact") {
+    Solve<double, DoubleWell<double>> tried({}, 0.3);
+    CHECK(tried.report.indefinite_hessians > 0);
+    CHECK(tried.report.indefinite_hessians == tried.report.filtered_iterations);
+    Solve<double, DoubleWell<double>> spared({}, 0.3, {.far_step = 0.05});
+    CHECK(spared.report.status == SolveStatus::converged);
+    CHECK(spared.report.indefinite_hessians == 0);
+    CHECK(spared.report.filtered_iterations >= 2);
+    CHECK(spared.report.iterations > spared.report.filtered_iterations);
+    CHECK(spared.d(0, 1) == doctest::Approx(1).epsilon(1e-12));
+    // after a failure as many more iterations are filtered
+    Solve<double, DoubleWell<double>> patient({}, 0.3, {.filtered_after_failure = 1});
+    CHECK(patient.report.indefinite_hessians > 0);
+    CHECK(patient.report.filtered_iterations > patient.report.indefinite_hessians);
+    CHECK(patient.report.status == SolveStatus::converged);
+}
+
+TEST_CASE("the adaptive filter clamps where the model predicts well") {
+    // where f'' < 0 clamping leaves no curvature at all: only the absolute filter can step
+    Solve<double, DoubleWell<double>> badly_predicted({}, 0.3, {.adapts_filter = true});
+    CHECK(badly_predicted.report.status == SolveStatus::converged);
+    // the filtered steps of a quadratic are predicted exactly
+    Solve<double, Spring<double>> well_predicted({.stiffness = 1, .centre = 5}, 0.0, {.adapts_filter = true, .far_step = 1e-3});
+    CHECK(well_predicted.report.status == SolveStatus::converged);
+    CHECK(well_predicted.d(0, 1) == doctest::Approx(5));
+}
+
 TEST_CASE_TEMPLATE("without a tolerance the precision decides", Scalar, float, double) {
     Solve<Scalar, Exponential<Scalar>> solve({}, Scalar(2), {.step_tolerance = Scalar(0)});
     CHECK(solve.report.succeeded());

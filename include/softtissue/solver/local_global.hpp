@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// As-rigid-as-possible shapes by alternating rotation fits and Poisson solves (Projective Skinning).
+///
+/// What        minimises E(x) = sum_c V_c |F_c(x) - R_c|^2 over free vertices and rotations.
+/// Equation    local  R_c = argmin |F_c(x) - R|;   global  Poisson reconstruction with the targets R_c
+/// Shapes      x 3 x vertices [m], prescribed columns given, the free ones are the start
+/// Valid       E never increases. Converges linearly; stops after max_iterations or when no vertex moves by more than
+///             step_tolerance.
+/// Source      Komaritzan & Botsch 2018; Bouaziz et al. 2014; Nolte et al. 2026, sec. 5.2.2 (30 iterations)
+/// Cost        per iteration one rotation fit per cell and one Poisson solve; allocates on the first call only
+/// Tests       tests/unit/solver/local_global_test.cpp
+#pragma once
+
+#include <softtissue/core/executor.hpp>
+#include <softtissue/core/notation.hpp>
+#include <softtissue/linalg/rotation_fit.hpp>
+#include <softtissue/solver/poisson_reconstruction.hpp>
+#include <softtissue/solver/report.hpp>
+
+#include <cmath>
+
+namespace softtissue {
+
+template <RealScalar S>
+struct LocalGlobalOptions {
+    int max_iterations = 30;
+    S step_tolerance = S(1e-6);  ///< [m]
+};
+
+template <RealScalar S>
+struct [[nodiscard]] LocalGlobalReport {
+    SolveStatus status = SolveStatus::iteration_limit;
+    int iterations = 0;
+    S step = S(0);  ///< largest motion of a vertex in the last iteration [m]
+};
+
+template <class ElementType, RealScalar S>
+class LocalGlobal {
+public:
+    using Scalar = S;
+
+    /// `poisson` must outlive this.
+    explicit LocalGlobal(PoissonReconstruction<ElementType, Scalar>& poisson) : poisson_(&poisson) {}
+
+    template <Executor E = SequentialExecutor>
+    LocalGlobalReport<Scalar> solve_into(Matrix3X<Scalar>& x, const LocalGlobalOptions<Scalar>& options = {},
+                                         const E& executor = {}) {
+        LocalGlobalReport<Scalar> report;
+        if (!std::isfinite(x.sum())) {
+            report.status = SolveStatus::not_finite;
+            return report;
+        }
+        while (report.iterations < options.max_iterations) {
+            last_ = x;
+            poisson_->gradients_into(x, targets_, executor);
+            fit_rotations_into(targets_, targets_, executor);
+            poisson_->solve_into(targets_, x, executor);
+            ++report.iterations;
+            report.step = (x - last_).colwise().norm().maxCoeff();
+            if (report.step <= options.step_tolerance) {
+                report.status = SolveStatus::converged;
+                break;
+            }
+        }
+        return report;
+    }
+
+private:
+    PoissonReconstruction<ElementType, Scalar>* poisson_;
+    Matrix3X<Scalar> targets_, last_;
+};
+
+}  // namespace softtissue
