@@ -3,7 +3,8 @@
 /// The inside of the bone wrap as tets that follow the skeleton, to embed bones in.
 ///
 /// What        close_cuts(): the bone wrap with its cuts capped; make_bone_interior(): filled with tets, a row of skinning
-///             weights for every vertex, so that one skinning call poses all of them.
+///             weights for every vertex, so that one skinning call poses all of them; join_to_layers(): numbered like
+///             the layers around the bone wrap, for an Embedding in both.
 /// Order       vertices of the bone wrap; the middle of each cut, as boundary_loops() orders them; what the mesher adds.
 /// Weights     bone wrap: as given. Middle of a cut: the mean over its loop. Added by the mesher: harmonic between these,
 ///             clamped to >= 0 and normalised.
@@ -24,6 +25,7 @@
 #include <softtissue/mesh/cell_mesh.hpp>
 #include <softtissue/mesh/harmonic.hpp>
 #include <softtissue/mesh/laplacian.hpp>
+#include <softtissue/mesh/prism_layers.hpp>
 #include <softtissue/mesh/triangle_mesh.hpp>
 #include <softtissue/skinning/weights.hpp>
 
@@ -38,7 +40,8 @@ template <RealScalar S>
 struct BoneInterior {
     CellMesh<Tet4, S> mesh;
     SkinningWeights<S> weights;  // one row per vertex of mesh
-    Index num_wrap_vertices;     // the first vertices of mesh
+    Index
+        num_given_vertices;  // the first vertices of mesh: those of the bone wrap, or of the layers (join_to_layers())
 };
 
 /// The surface with a fan around a new vertex, the mean of the loop, over each boundary loop.
@@ -116,6 +119,35 @@ BoneInterior<S> make_bone_interior(const Matrix3X<S>& positions, const Triangles
     interior.mesh.validate();
     interior.weights = detail::interior_weights(weights, closed, interior.mesh);
     return interior;
+}
+
+/// The interior renumbered to share the vertices of a layered mesh whose level 0 is its bone wrap: the vertices of the
+/// layered mesh, with the given rest positions and weights, then the interior's other ones.
+template <RealScalar S>
+BoneInterior<S> join_to_layers(const BoneInterior<S>& interior, const PrismLayers& layers,
+                               const Matrix3X<S>& rest_positions, const SkinningWeights<S>& weights) {
+    const Index num_wrap = interior.num_given_vertices;
+    const Index num_other = interior.mesh.num_vertices() - num_wrap;
+    const Index num_layered = layers.num_vertices();
+    require(layers.num_columns == num_wrap && rest_positions.cols() == num_layered &&
+                weights.num_vertices() == num_layered && weights.num_joints() == interior.weights.num_joints(),
+            "bone interior: layers of ", layers.num_columns, " columns with ", rest_positions.cols(), " positions and ",
+            weights.num_vertices(), " rows of weights of ", weights.num_joints(), " joints do not fit a bone wrap of ",
+            num_wrap, " vertices and ", interior.weights.num_joints(), " joints");
+    const Matrix3X<S> wrap = layers.level_positions(rest_positions, 0);
+    require(wrap == interior.mesh.rest_positions.leftCols(num_wrap),
+            "bone interior: level 0 of the layers is not the bone wrap that was filled");
+    BoneInterior<S> joined{{Matrix3X<S>(3, num_layered + num_other), interior.mesh.cells}, {}, num_layered};
+    joined.mesh.rest_positions << rest_positions, interior.mesh.rest_positions.rightCols(num_other);
+    for (Index c = 0; c < joined.mesh.num_cells(); ++c) {
+        for (std::int32_t& v : joined.mesh.cells.col(c)) {
+            v = static_cast<std::int32_t>(v < num_wrap ? layers.vertex(v, 0) : num_layered + v - num_wrap);
+        }
+    }
+    MatrixX<S> dense(num_layered + num_other, weights.num_joints());
+    dense << weights.dense(), interior.weights.dense().bottomRows(num_other);
+    joined.weights = SkinningWeights<S>(dense);
+    return joined;
 }
 
 }  // namespace softtissue

@@ -37,7 +37,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -66,17 +65,6 @@ void validate_options(const SoftLayerOptions<S>& options) {
           "a value between 0 and 1");
 }
 
-/// The unit normals of the triangles at `vertex`, 3 x k.
-template <RealScalar S>
-Matrix3X<S> incident_normals(const TriangleMesh& mesh, const Matrix3X<S>& normals, Index vertex) {
-    const std::span<const std::int32_t> triangles = mesh.vertex_triangles(vertex);
-    Matrix3X<S> incident(3, static_cast<Index>(triangles.size()));
-    for (size_t k = 0; k < triangles.size(); ++k) {
-        incident.col(static_cast<Index>(k)) = normals.col(triangles[k]);
-    }
-    return incident;
-}
-
 /// The region, grown smaller until every vertex has a validity cone; sets vertices_without_cone and smallest_cone_cosine.
 template <RealScalar S>
 SimulatedRegion<S> region_with_cones(const Matrix3X<S>& positions, const TriangleMesh& body,
@@ -94,7 +82,7 @@ SimulatedRegion<S> region_with_cones(const Matrix3X<S>& positions, const Triangl
         report.smallest_cone_cosine = S(1);
         Index excluded = 0;
         for (Index v = 0; v < region.num_vertices(); ++v) {
-            const S cosine = best_inward_direction<S>(incident_normals<S>(mesh, region_normals, v)).cosine;
+            const S cosine = best_inward_direction<S>(incident_columns<S>(mesh, region_normals, v)).cosine;
             report.smallest_cone_cosine = std::min(report.smallest_cone_cosine, cosine);
             if (cosine < options.smallest_cosine) {
                 region_options.excluded_vertices.push_back(region.body_vertices[size_t(v)]);
@@ -117,7 +105,7 @@ void set_directions(SoftLayer<S>& layer, const TriangleMesh& mesh, const BoneSeg
     layer.directions = targets - skin;
     layer.skeleton_distance = layer.directions.colwise().norm().transpose();
     for (Index v = 0; v < skin.cols(); ++v) {
-        const Matrix3X<S> incident = incident_normals<S>(mesh, normals, v);
+        const Matrix3X<S> incident = incident_columns<S>(mesh, normals, v);
         const InwardDirection<S> best = best_inward_direction<S>(incident);
         const Vector3<S> towards =
             layer.skeleton_distance(v) > S(0) ? layer.directions.col(v).normalized() : best.direction;
@@ -144,8 +132,7 @@ VectorX<S> thinned_towards_cuts(const SoftLayer<S>& layer, const VectorX<S>& thi
     VectorX<S> thinned(thickness.size());
     const S rim = layer.options.minimum_thickness;
     for (Index v = 0; v < thickness.size(); ++v) {
-        const S s = std::min(layer.region.cut_distance(v) / layer.options.decay_distance, S(1));
-        thinned(v) = rim + (thickness(v) - rim) * s * s * (S(3) - S(2) * s);
+        thinned(v) = rim + (thickness(v) - rim) * layer.region.fade(v, layer.options.decay_distance);
     }
     return thinned;
 }

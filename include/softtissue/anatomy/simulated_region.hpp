@@ -57,6 +57,12 @@ struct SimulatedRegion {
     /// Whether `vertex` (of the region) lies on a cut.
     bool is_rim(Index vertex) const { return cut_distance(vertex) == S(0); }
 
+    /// 0 on a cut, rising smoothly (as 3 s^2 - 2 s^3) to 1 at `distance` from it.
+    S fade(Index vertex, S distance) const {
+        const S s = std::min(cut_distance(vertex) / distance, S(1));
+        return s * s * (S(3) - S(2) * s);
+    }
+
     /// The columns of a per-body-vertex array that belong to the region.
     Matrix3X<S> gather(const Matrix3X<S>& body_values) const {
         Matrix3X<S> values(3, num_vertices());

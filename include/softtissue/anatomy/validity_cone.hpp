@@ -14,12 +14,15 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/mesh/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
 
 namespace softtissue {
 
@@ -28,6 +31,17 @@ struct InwardDirection {
     Vector3<S> direction;
     S cosine;
 };
+
+/// The columns of a per-triangle array (such as normals) that belong to the triangles at `vertex`, 3 x k.
+template <RealScalar S>
+Matrix3X<S> incident_columns(const TriangleMesh& mesh, const Matrix3X<S>& per_triangle, Index vertex) {
+    const std::span<const std::int32_t> triangles = mesh.vertex_triangles(vertex);
+    Matrix3X<S> incident(3, static_cast<Index>(triangles.size()));
+    for (size_t k = 0; k < triangles.size(); ++k) {
+        incident.col(static_cast<Index>(k)) = per_triangle.col(triangles[k]);
+    }
+    return incident;
+}
 
 /// c(u): the smallest cosine between the inward direction `u` and the inward normals.
 template <RealScalar S>

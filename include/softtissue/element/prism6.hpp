@@ -194,7 +194,6 @@ struct Prism6 {
         return normals(X).transpose() * thicknesses(X);
     }
 
-private:
     /// Columns n_0, n_1, n_2: Bernstein coefficients of the normal of the triangle at s.
     template <class Scalar>
     static Matrix3<Scalar> normals(const Nodes<Scalar>& X) {
@@ -209,6 +208,7 @@ private:
         return n;
     }
 
+private:
     /// Columns d_i.
     template <class Scalar>
     static Matrix3<Scalar> thicknesses(const Nodes<Scalar>& X) {
