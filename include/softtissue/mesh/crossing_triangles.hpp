@@ -2,22 +2,24 @@
 /// @file
 /// Pairs of triangles that cross each other.
 ///
-/// What        all pairs without a common vertex of which an edge of one passes through the inside of the other.
-/// Shapes      positions 3 x n [m], triangles 3 x m; pairs ascending, smaller triangle first.
-/// Valid       pairs that share a vertex are not tested: a fold at a common edge or vertex is not found. Touching or coplanar
-///             triangles do not count as crossing.
-/// Cost        a uniform grid with cells of the mean edge length; linear for surfaces of even resolution.
+/// What        all pairs, within one surface or between two, of which an edge of one passes through the inside of the other.
+/// Shapes      positions 3 x n [m], triangles 3 x m; pairs ascending. Within one surface the smaller triangle is first,
+///             between two that of the first surface.
+/// Valid       Touching or coplanar triangles do not count as crossing. Within one surface pairs that share a vertex are not
+///             tested: a fold at a common edge or vertex is not found.
+/// Refuses     corners out of range or not finite (InvalidInput)
+/// Cost        a tree of boxes for each surface, O(m log m).
 /// Tests       tests/unit/mesh/crossing_triangles_test.cpp
 #pragma once
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/mesh/bounding_volume_hierarchy.hpp>
+#include <softtissue/mesh/triangle_boxes.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -55,84 +57,44 @@ bool triangles_cross(const Matrix3<S>& p, const Matrix3<S>& q) {
     return false;
 }
 
-/// Buckets of triangles by the grid cells that their bounding boxes touch, as sorted (cell, triangle) entries.
-template <RealScalar S>
-std::vector<std::pair<std::int64_t, std::int32_t>> grid_entries(const Matrix3X<S>& lower, const Matrix3X<S>& upper) {
-    const Vector3<S> origin = lower.rowwise().minCoeff();
-    const Vector3<S> extent = upper.rowwise().maxCoeff() - origin;
-    // At most 2^20 cells an axis, so that three cell numbers fit 64 bits.
-    const S spacing = std::max((upper - lower).colwise().norm().mean(), extent.maxCoeff() / S(1 << 20));
-    std::vector<std::pair<std::int64_t, std::int32_t>> entries;
-    const auto cell_of = [&](S coordinate, int axis) {
-        return spacing > S(0) ? std::int64_t(std::floor((coordinate - origin(axis)) / spacing)) : 0;
-    };
-    for (Index t = 0; t < lower.cols(); ++t) {
-        std::array<std::int64_t, 3> first{};
-        std::array<std::int64_t, 3> last{};
-        for (int axis = 0; axis < 3; ++axis) {
-            first[size_t(axis)] = cell_of(lower(axis, t), axis);
-            last[size_t(axis)] = cell_of(upper(axis, t), axis);
-        }
-        for (std::int64_t i = first[0]; i <= last[0]; ++i) {
-            for (std::int64_t j = first[1]; j <= last[1]; ++j) {
-                for (std::int64_t k = first[2]; k <= last[2]; ++k) {
-                    entries.emplace_back((i << 42) | (j << 21) | k, static_cast<std::int32_t>(t));
-                }
-            }
-        }
-    }
-    std::sort(entries.begin(), entries.end());
-    return entries;
-}
-
 }  // namespace detail
 
+using TrianglePairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+/// Where a surface crosses itself.
 template <RealScalar S>
-std::vector<std::pair<std::int32_t, std::int32_t>> crossing_triangles(const Matrix3X<S>& positions,
-                                                                      const Triangles& triangles) {
-    std::vector<std::pair<std::int32_t, std::int32_t>> crossings;
-    if (triangles.cols() == 0) {
-        return crossings;
-    }
-    std::vector<Matrix3<S>> corners(size_t(triangles.cols()));
-    Matrix3X<S> lower(3, triangles.cols());
-    Matrix3X<S> upper(3, triangles.cols());
-    for (Index t = 0; t < triangles.cols(); ++t) {
-        for (int k = 0; k < 3; ++k) {
-            corners[size_t(t)].col(k) = positions.col(triangles(k, t));
-        }
-        lower.col(t) = corners[size_t(t)].rowwise().minCoeff();
-        upper.col(t) = corners[size_t(t)].rowwise().maxCoeff();
-    }
-    const auto may_cross = [&](std::int32_t s, std::int32_t t) {
-        if ((lower.col(s).array() > upper.col(t).array()).any() ||
-            (lower.col(t).array() > upper.col(s).array()).any()) {
-            return false;
-        }
+TrianglePairs crossing_triangles(const Matrix3X<S>& positions, const Triangles& triangles) {
+    TrianglePairs crossings;
+    const BoundingVolumeHierarchy<S> tree(triangle_boxes(positions, triangles));
+    tree.for_each_overlapping_pair([&](std::int32_t s, std::int32_t t) {
         for (int k = 0; k < 3; ++k) {
             if ((triangles.col(t).array() == triangles(k, s)).any()) {
-                return false;
+                return;
             }
         }
-        return true;
-    };
-    const auto entries = detail::grid_entries(lower, upper);
-    for (size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-        while (end < entries.size() && entries[end].first == entries[begin].first) {
-            ++end;
+        if (detail::triangles_cross<S>(triangle_corners(positions, triangles, s),
+                                       triangle_corners(positions, triangles, t))) {
+            crossings.emplace_back(s, t);
         }
-        for (size_t i = begin; i < end; ++i) {
-            for (size_t j = i + 1; j < end; ++j) {
-                const std::int32_t s = entries[i].second;
-                const std::int32_t t = entries[j].second;
-                if (may_cross(s, t) && detail::triangles_cross(corners[size_t(s)], corners[size_t(t)])) {
-                    crossings.emplace_back(s, t);
-                }
-            }
-        }
-    }
+    });
     std::sort(crossings.begin(), crossings.end());
-    crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
+    return crossings;
+}
+
+/// Where two surfaces, each with its own vertices, cross one another.
+template <RealScalar S>
+TrianglePairs crossing_triangles(const Matrix3X<S>& first_positions, const Triangles& first_triangles,
+                                 const Matrix3X<S>& second_positions, const Triangles& second_triangles) {
+    TrianglePairs crossings;
+    const BoundingVolumeHierarchy<S> first(triangle_boxes(first_positions, first_triangles));
+    const BoundingVolumeHierarchy<S> second(triangle_boxes(second_positions, second_triangles));
+    first.for_each_overlapping_pair(second, [&](std::int32_t s, std::int32_t t) {
+        if (detail::triangles_cross<S>(triangle_corners(first_positions, first_triangles, s),
+                                       triangle_corners(second_positions, second_triangles, t))) {
+            crossings.emplace_back(s, t);
+        }
+    });
+    std::sort(crossings.begin(), crossings.end());
     return crossings;
 }
 

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -47,12 +48,12 @@ TEST_CASE_TEMPLATE("a triangle through another crosses, one beside or touching d
     CHECK(crossing_triangles(positions, Triangles(3, 0)).empty());
 }
 
-TEST_CASE("the grid finds what comparing all pairs finds") {
+TEST_CASE("the tree finds what comparing all pairs finds") {
     RandomGenerator random(7);
     const Index count = 200;
     Matrix3X<double> positions(3, 3 * count);
     for (Index t = 0; t < count; ++t) {
-        const double size = random.uniform() < 0.1 ? 1.0 : 0.15;  // a few much larger than the grid's cells
+        const double size = random.uniform() < 0.1 ? 1.0 : 0.15;  // a few much larger than the others
         const Vector3<double> centre(random.uniform(), random.uniform(), random.uniform());
         for (Index k = 0; k < 3; ++k) {
             const Vector3<double> offset(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -72,4 +73,46 @@ TEST_CASE("the grid finds what comparing all pairs finds") {
     }
     CHECK(all.size() > 50);
     CHECK(crossing_triangles(positions, triangles) == all);
+}
+
+TEST_CASE_TEMPLATE("between two surfaces their own vertices do not matter", S, float, double) {
+    Matrix3X<S> first(3, 3);
+    first << 0, 2, 0,  //
+        0, 0, 2,       //
+        0, 0, 0;
+    Matrix3X<S> second(3, 6);
+    second << 5, 5, 6, S(0.5), S(0.5), S(0.5),  //
+        5, 6, 5, S(0.5), S(0.5), 3,             //
+        0, 0, 0, -1, 1, 0;
+    CHECK(crossing_triangles(first, separate_triangles(1), second, separate_triangles(2)) == Pairs{{0, 1}});
+    CHECK(crossing_triangles(second, separate_triangles(2), first, separate_triangles(1)) == Pairs{{1, 0}});
+    CHECK(crossing_triangles(first, separate_triangles(1), first, separate_triangles(1)).empty());  // coplanar
+    CHECK(crossing_triangles(first, Triangles(3, 0), second, separate_triangles(2)).empty());
+}
+
+TEST_CASE("two surfaces cross where the two in one array do") {
+    RandomGenerator random(8);
+    const Index count = 150;
+    Matrix3X<double> positions = Matrix3X<double>::NullaryExpr(3, 6 * count, [&random] { return random.uniform(); });
+    for (Index t = 0; t < 2 * count; ++t) {
+        const Vector3<double> corner = positions.col(3 * t);
+        positions.middleCols(3 * t, 3) = (0.75 * corner).replicate(1, 3) + 0.25 * positions.middleCols(3 * t, 3);
+    }
+    Pairs across;
+    for (const auto& [s, t] : crossing_triangles(positions, separate_triangles(2 * count))) {
+        if (s < count && t >= count) {
+            across.emplace_back(s, std::int32_t(t - count));
+        }
+    }
+    CHECK(across.size() > 50);
+    const Matrix3X<double> first = positions.leftCols(3 * count);
+    const Matrix3X<double> second = positions.rightCols(3 * count);
+    CHECK(crossing_triangles(first, separate_triangles(count), second, separate_triangles(count)) == across);
+}
+
+TEST_CASE("corners that are not finite are refused") {
+    Matrix3X<double> positions = Matrix3X<double>::Zero(3, 6);
+    positions(1, 4) = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(crossing_triangles(positions, separate_triangles(2)),
+                         "triangle 1: position of vertex 4 is not finite", InvalidInput);
 }
