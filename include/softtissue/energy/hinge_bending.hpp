@@ -4,7 +4,7 @@
 ///
 /// What        EnergyTerm over the interior edges of a surface; the measure says how an angle is compared with its rest value.
 ///                 HingeBending<DihedralChord<double>> bending(surface, rest_positions, 2e-3);
-/// Equation    E = k sum_e f_e,  f_e = 1/2 w_e (theta - Theta)^2 + O((theta - Theta)^4 or exact), see the measures
+/// Equation    E = k sum_e f_e,  f_e = 1/2 w_e (theta - Theta)^2 near rest, w_e = L^2/A; exactly: see the measure
 /// Units       k J (bending rigidity), E J
 /// Scaling     independent of the mesh: a cylinder of curvature c has E = 1/2 (3 k) c^2 per area on equilateral triangles, hence
 ///             k = D/3 for a plate of rigidity D = Y t^3 / (12 (1 - nu^2)); the hinges' own ratio of curvatures is nu = -1/3.
@@ -12,7 +12,7 @@
 /// Filter      numeric, of the 9x9 Hessian without translations: the same as that of the 12x12 one
 /// Refuses     an edge without rest length, positions that do not fit the surface, a negative stiffness, what the measure refuses
 /// Source      Nolte et al. 2026, eq. (5); Grinspun et al. 2003; rigidity: Seung, Nelson 1988
-/// Cost        Hessian about 1.5 kflop a hinge, filtered about 20
+/// Cost        about 2 kflop a hinge for the Hessian, ten times that for a filtered one
 /// Tests       tests/unit/energy/hinge_bending_test.cpp
 #pragma once
 
