@@ -31,7 +31,7 @@ constexpr Subject subjects[] = {
     {"o5_", nullptr, "networks are not part of the library yet"},
     {"o6_tri", check_triangle_geometry, nullptr},
     {"o6_tet", check_tet_geometry, nullptr},
-    {"o6_winding", nullptr, "winding numbers are not part of the library yet"},
+    {"o6_winding", check_winding_number, nullptr},
     {"o6_shell", check_shell, nullptr},
     {"o7_", check_skinning, nullptr},
 };

@@ -77,6 +77,7 @@ void check_static_prisms(const ReferenceCase& reference, Checklist& checks);
 void check_dynamics(const ReferenceCase& reference, Checklist& checks);
 void check_triangle_geometry(const ReferenceCase& reference, Checklist& checks);
 void check_tet_geometry(const ReferenceCase& reference, Checklist& checks);
+void check_winding_number(const ReferenceCase& reference, Checklist& checks);
 void check_shell(const ReferenceCase& reference, Checklist& checks);
 void check_skinning(const ReferenceCase& reference, Checklist& checks);
 void check_smpl_bodies(const std::filesystem::path& reference, const std::filesystem::path& bodies, Checklist& checks);
