@@ -58,9 +58,9 @@ inline const Pose<Scalar>& strongest_pose(const Motion<Scalar>& motion) {
     });
 }
 
-/// How far the tissue, at rest in the pose, is from the skinned shape (Romero et al. 2020, fig. 4) [m].
+/// How far the tissue, at rest in the pose, is from the skinned shape (Romero et al. 2020, fig. 4).
 template <class ElementType, class Frame>
-double static_pose_error(const Settings& settings, const Scene& scene, const ThreadExecutor& executor, const char* frame) {
+StaticPose static_pose(const Settings& settings, const Scene& scene, const ThreadExecutor& executor, const char* frame) {
     Assembled<ElementType, Frame> assembled(settings, scene, executor);
     Avatar<ElementType, Frame>& avatar = assembled.avatar;
     const Pose<Scalar>& pose = strongest_pose(scene.motion);
@@ -71,7 +71,7 @@ double static_pose_error(const Settings& settings, const Scene& scene, const Thr
     const double error = (avatar.positions() - avatar.skinned()).colwise().norm().maxCoeff();
     std::fprintf(stderr, "static pose, %-10s frame: %s after %d iterations, %.3g mm from the skinned body\n", frame,
                  to_string(report.status), report.iterations, 1e3 * error);
-    return error;
+    return {error, report.status};
 }
 
 template <class ElementType, class Frame>
@@ -114,9 +114,9 @@ void simulate(const Settings& settings, const Scene& scene, const ThreadExecutor
 
 template <class ElementType>
 void run_avatar(const Settings& settings, const Scene& scene, const ThreadExecutor& executor, AvatarResults& results) {
-    results.static_unposed = static_pose_error<ElementType, UnposedFrame>(settings, scene, executor, "unposed");
-    results.static_world = static_pose_error<ElementType, WorldFrame>(settings, scene, executor, "world");
-    results.static_retargeted = static_pose_error<ElementType, RestRetargetedFrame>(settings, scene, executor, "retargeted");
+    results.static_unposed = static_pose<ElementType, UnposedFrame>(settings, scene, executor, "unposed");
+    results.static_world = static_pose<ElementType, WorldFrame>(settings, scene, executor, "world");
+    results.static_retargeted = static_pose<ElementType, RestRetargetedFrame>(settings, scene, executor, "retargeted");
     if (settings.frame == "unposed") {
         simulate<ElementType, UnposedFrame>(settings, scene, executor, results);
     } else if (settings.frame == "world") {

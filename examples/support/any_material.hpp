@@ -57,6 +57,9 @@ inline constexpr double normal_modulus = 5e3;       // [Pa]
 inline constexpr double tangential_modulus = 10e3;  // [Pa]
 inline constexpr double poisson_ratio = 0.2;
 inline constexpr double exponent = 4.0;
+// The law is quadratic in eta sigma from here on (strains of 100 % and more), so that cells which skinning alone has crushed
+// do not outweigh all others by a hundred powers of ten.
+inline constexpr double max_exponent = 12.0;
 
 /// `name` is fung, snh, corotated or arap; the isotropic ones take the mean of the two moduli. `bases`: one per cell.
 template <class S>
@@ -75,7 +78,8 @@ AnyMaterialField<S> make_material_field(const std::string& name, const std::vect
         return {FungOrthotropicField<S>({.normal_modulus = S(normal_modulus),
                                          .tangential_modulus = S(tangential_modulus),
                                          .poisson_ratio = S(poisson_ratio),
-                                         .exponent = S(exponent)},
+                                         .exponent = S(exponent),
+                                         .max_exponent = S(max_exponent)},
                                         columns)};
     }
     if (name == "snh") {

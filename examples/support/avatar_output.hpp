@@ -45,9 +45,15 @@ struct StepStatistics {
     double milliseconds_mean() const { return milliseconds / std::max(1, count); }
 };
 
+/// The tissue at rest in one pose.
+struct StaticPose {
+    double error = 0.0;  // largest distance from the skinned body [m]
+    softtissue::SolveStatus status = softtissue::SolveStatus::cancelled;
+};
+
 struct AvatarResults {
     Index vertices = 0, cells = 0, free_vertices = 0, inverted_at_rest = 0;
-    double static_unposed = 0.0, static_world = 0.0, static_retargeted = 0.0;  // [m]
+    StaticPose static_unposed, static_world, static_retargeted;
     StepStatistics steps;
     double largest_displacement = 0.0;  // [m]
     double seconds_setup = 0.0;
@@ -69,9 +75,12 @@ inline void write_results(const std::filesystem::path& path, const AvatarResults
         {"cells", results.cells},
         {"rest", {{"inverted_cells", results.inverted_at_rest}}},
         {"static_pose",
-         {{"unposed_max_error_m", results.static_unposed},
-          {"world_max_error_m", results.static_world},
-          {"retargeted_max_error_m", results.static_retargeted}}},
+         {{"unposed_max_error_m", results.static_unposed.error},
+          {"world_max_error_m", results.static_world.error},
+          {"retargeted_max_error_m", results.static_retargeted.error},
+          {"unposed_status", to_string(results.static_unposed.status)},
+          {"world_status", to_string(results.static_world.status)},
+          {"retargeted_status", to_string(results.static_retargeted.status)}}},
         {"steps",
          {{"count", results.steps.count},
           {"not_converged", results.steps.not_converged},
@@ -101,9 +110,12 @@ inline void print_results(const AvatarResults& results, const std::filesystem::p
                                              std::to_string(results.free_vertices));
     row("inverted cells at rest, ever", std::to_string(results.inverted_at_rest) + ", " +
                                             std::to_string(results.steps.inverted_cells_max));
-    row("static pose, unposed strain", number("%.3g mm from the skinned body", 1e3 * results.static_unposed));
-    row("static pose, world strain", number("%.3g mm", 1e3 * results.static_world));
-    row("static pose, retargeted strain", number("%.3g mm", 1e3 * results.static_retargeted));
+    const auto static_row = [&](const char* name, const StaticPose& pose) {
+        row(name, number("%.3g mm from the skinned body, ", 1e3 * pose.error) + to_string(pose.status));
+    };
+    static_row("static pose, unposed strain", results.static_unposed);
+    static_row("static pose, world strain", results.static_world);
+    static_row("static pose, retargeted strain", results.static_retargeted);
     row("time steps, not converged", std::to_string(results.steps.count) + ", " + std::to_string(results.steps.not_converged));
     row("Newton iterations a step", number("%.2f", results.steps.newton_iterations_mean()) + ", at most " +
                                         std::to_string(results.steps.newton_iterations_max));

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// From a value in [0, 1] to a colour: neutral where nothing happens, dark red at the end of the scale.
+/// From a value to a colour: neutral where nothing happens, dark red at the end of the scale; blue for negative values.
 #pragma once
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace examples {
 
@@ -19,6 +20,12 @@ inline Eigen::Vector3f scale_color(double value) {
     const size_t below = std::min(size_t(place), stops.size() - 2);
     const float t = float(place - double(below));
     return (1.0F - t) * stops[below] + t * stops[below + 1];
+}
+
+/// For values in [-1, 1]: blue below zero, red above.
+inline Eigen::Vector3f signed_scale_color(double value) {
+    const Eigen::Vector3f color = scale_color(std::abs(value));
+    return value < 0.0 ? Eigen::Vector3f(color.reverse()) : color;
 }
 
 }  // namespace examples

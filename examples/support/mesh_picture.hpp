@@ -58,9 +58,10 @@ public:
     }
 
     /// Draws a mesh into the box (x, y, width, height) with `center` of the world in its middle, `scale` pixels a metre.
-    /// `colors`: sRGB per vertex, 3 x n.
+    /// `colors`: sRGB per vertex, 3 x n; `opacity` mixes the mesh with what was drawn before.
     void mesh(const Matrix3X<double>& positions, const softtissue::Triangles& triangles, const Matrix3X<float>& colors,
-              const View& view, const Eigen::Vector3d& center, double scale, int x, int y, int width, int height) {
+              const View& view, const Eigen::Vector3d& center, double scale, int x, int y, int width, int height,
+              float opacity = 1.0F) {
         constexpr int samples = 3;  // along each side of a pixel
         Raster raster(samples * width, samples * height);
         Matrix3X<double> screen = view.rotation * (positions.colwise() - center);
@@ -77,7 +78,7 @@ public:
         for (Index t = 0; t < triangles.cols(); ++t) {
             raster.triangle(screen, shaded, triangles.col(t));
         }
-        copy(raster, samples, x, y, width, height);
+        copy(raster, samples, x, y, width, height, opacity);
     }
 
     void write(const std::filesystem::path& path) {
@@ -134,7 +135,7 @@ private:
     };
 
     /// Averages the samples of every pixel into the picture; pixels without a mesh stay as they are.
-    void copy(const Raster& raster, int samples, int x, int y, int width, int height) {
+    void copy(const Raster& raster, int samples, int x, int y, int width, int height, float opacity) {
         cairo_surface_flush(surface_.get());
         unsigned char* const data = cairo_image_surface_get_data(surface_.get());
         const int stride = cairo_image_surface_get_stride(surface_.get());
@@ -151,7 +152,9 @@ private:
                     unsigned char* const pixel = data + (y + row) * stride + 4 * (x + column);
                     for (int channel = 0; channel < 3; ++channel) {
                         const float value = std::clamp(sum(channel) / float(samples * samples), 0.0F, 1.0F);
-                        pixel[2 - channel] = static_cast<unsigned char>(std::lround(255.0F * value));
+                        const float below = float(pixel[2 - channel]);
+                        pixel[2 - channel] =
+                            static_cast<unsigned char>(std::lround(below + opacity * (255.0F * value - below)));
                     }
                 }
             }

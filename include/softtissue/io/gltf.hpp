@@ -48,6 +48,7 @@ struct GltfMesh {
     Vector3<double> base_color = Vector3<double>::Constant(0.8);  ///< multiplies the vertex colours
     Matrix3X<float> colors = {};                                  ///< one per vertex, or empty
     bool smooth_shading = true;                                   ///< store vertex normals for every frame
+    double opacity = 1.0;                                         ///< below 1: blended with what lies behind
 };
 
 class GltfAnimation {
@@ -67,8 +68,11 @@ public:
         require(mesh.triangles.cols() > 0, "gltf: mesh '", mesh.name, "' has no triangles");
         const auto number = static_cast<int>(meshes_.size());
         tinygltf::Material material;
+        require(mesh.opacity > 0.0 && mesh.opacity <= 1.0, "gltf: opacity of mesh '", mesh.name, "' is ", mesh.opacity,
+                ", expected > 0 and <= 1");
         material.pbrMetallicRoughness.baseColorFactor = {mesh.base_color.x(), mesh.base_color.y(), mesh.base_color.z(),
-                                                         1.0};
+                                                         mesh.opacity};
+        material.alphaMode = mesh.opacity < 1.0 ? "BLEND" : "OPAQUE";
         material.pbrMetallicRoughness.metallicFactor = 0.0;
         material.pbrMetallicRoughness.roughnessFactor = 0.7;
         model_.materials.push_back(std::move(material));

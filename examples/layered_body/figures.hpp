@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// How good each method is on each pose: the figures of Nolte et al. 2026, tables 1 and 3.
+#pragma once
+
+#include "scene.hpp"
+
+#include <softtissue/anatomy/posed_wrap.hpp>
+#include <softtissue/io/atomic_file.hpp>
+#include <softtissue/metric/gradient_error.hpp>
+#include <softtissue/metric/intersection.hpp>
+#include <softtissue/metric/position_error.hpp>
+#include <softtissue/metric/protrusion.hpp>
+#include <softtissue/metric/volume_change.hpp>
+#include <softtissue/ndg/layered_animation.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace examples {
+
+/// Sums over poses; the table shows means.
+struct MethodFigures {
+    std::string name;
+    int poses = 0, not_converged = 0, poses_with_intersection = 0, poses_with_protrusion = 0;
+    double position = 0.0, gradient = 0.0, inverted = 0.0, volume = 0.0, milliseconds = 0.0, iterations = 0.0;
+    double largest_position = 0.0, largest_protrusion = 0.0;  // [m]
+
+    double mean(double sum) const { return sum / std::max(1, poses); }
+};
+
+struct Figures {
+    std::vector<MethodFigures> methods;
+    int poses = 0;
+    bool has_reference = false;  // FEM is among the methods
+    std::vector<int> start_dependent_poses;
+    Index folded_triangles = 0, infeasible_vertices = 0;  // of the bone wrap, most in a pose
+    bool interrupted = false;
+};
+
+/// A pose whose equilibrium from another start lies farther away than this on average has several [m].
+inline constexpr double start_tolerance = 1e-4;
+
+inline void add_pose(MethodFigures& figures, const Scene& scene, const RestOperators<Prism6, Scalar>& operators,
+                     const PrescribedVertices& prescribed, const Matrix3X<Scalar>& x, const Matrix3X<Scalar>* reference,
+                     const SolveReport<Scalar>& report, const Scene::Frame& frame, double milliseconds) {
+    ++figures.poses;
+    figures.not_converged += report.succeeded() ? 0 : 1;
+    figures.iterations += report.iterations;
+    figures.milliseconds += milliseconds;
+    if (reference != nullptr) {
+        const PositionError<Scalar> error = position_error(x, *reference, prescribed);
+        figures.position += error.mean;
+        figures.largest_position = std::max(figures.largest_position, error.largest);
+        figures.gradient += gradient_error(scene.layered.mesh, operators, x, *reference);
+    }
+    const VolumeChange<Scalar> change = volume_change(scene.layered.mesh, x);
+    figures.inverted += double(change.num_inverted);
+    figures.volume += change.mean_square;
+    const Intersection crossing =
+        compute_intersection(frame.skin, scene.body.faces, frame.muscles, scene.muscles.triangles);
+    const Protrusion<Scalar> protrusion = compute_protrusion(frame.skin, scene.body.faces, frame.muscles);
+    figures.poses_with_intersection += crossing.is_present() ? 1 : 0;
+    figures.poses_with_protrusion += protrusion.is_present() ? 1 : 0;
+    figures.largest_protrusion = std::max(figures.largest_protrusion, protrusion.magnitude);
+}
+
+inline void print_figures(const Figures& figures) {
+    std::printf("\n%d poses; errors against fem\n", figures.poses);
+    std::printf("               E_pos    E_grad    E_inv     E_vol   not con-      time  poses with muscle\n");
+    std::printf("                  mm      1e-3    cells      1e-3   verged          ms  crossing   outside, at most\n");
+    for (const MethodFigures& m : figures.methods) {
+        std::printf("%-11s", m.name.c_str());
+        if (figures.has_reference) {
+            std::printf(" %8.3f  %8.3f", 1e3 * m.mean(m.position), 1e3 * m.mean(m.gradient));
+        } else {
+            std::printf(" %8s  %8s", "-", "-");
+        }
+        std::printf(" %8.2f  %8.2f   %6d  %8.0f    %6d   %6d  %6.1f mm\n", m.mean(m.inverted), 1e3 * m.mean(m.volume),
+                    m.not_converged, m.mean(m.milliseconds), m.poses_with_intersection, m.poses_with_protrusion,
+                    1e3 * m.largest_protrusion);
+    }
+    std::printf("\nbone wrap: at most %d folded triangles and %d vertices without room for muscle in a pose\n",
+                int(figures.folded_triangles), int(figures.infeasible_vertices));
+    if (figures.has_reference) {
+        std::printf("poses with several equilibria (another start ends more than %.1f mm away on average): %d\n",
+                    1e3 * start_tolerance, int(figures.start_dependent_poses.size()));
+    }
+}
+
+inline void write_figures(const std::filesystem::path& path, const Figures& figures, const Scene& scene) {
+    const LayeredBodyReport<Scalar>& rest = scene.layered.report;
+    nlohmann::ordered_json json = {
+        {"poses", figures.poses},
+        {"cells", scene.layered.mesh.num_cells()},
+        {"vertices", scene.layered.mesh.num_vertices()},
+        {"rest",
+         {{"inverted", rest.muscle.inverted_cells + rest.fat.inverted_cells},
+          {"min_scaled_jacobian_muscle", rest.muscle.smallest_scaled_jacobian},
+          {"min_scaled_jacobian_fat", rest.fat.smallest_scaled_jacobian},
+          {"volume_bone_m3", rest.bone_volume},
+          {"volume_muscle_m3", rest.muscle.volume},
+          {"volume_fat_m3", rest.fat.volume}}},
+        {"embedded",
+         {{"bone_vertices", scene.bones.embedding.num_points()},
+          {"bone_vertices_outside", scene.bones.embedding.report().num_outside},
+          {"muscle_vertices", scene.muscles.embedding.num_points()},
+          {"muscle_vertices_outside", scene.muscles.embedding.report().num_outside}}},
+        {"bone_wrap",
+         {{"folded_triangles_max", figures.folded_triangles}, {"infeasible_vertices_max", figures.infeasible_vertices}}},
+        {"start_dependent_poses", figures.start_dependent_poses},
+        {"interrupted", figures.interrupted}};
+    for (const MethodFigures& m : figures.methods) {
+        nlohmann::ordered_json& method = json["methods"][m.name];
+        method["E_pos_mm"] = figures.has_reference ? nlohmann::ordered_json(1e3 * m.mean(m.position)) : nullptr;
+        method["E_pos_max_mm"] = figures.has_reference ? nlohmann::ordered_json(1e3 * m.largest_position) : nullptr;
+        method["E_grad"] = figures.has_reference ? nlohmann::ordered_json(m.mean(m.gradient)) : nullptr;
+        method["E_inv"] = m.mean(m.inverted);
+        method["E_vol"] = m.mean(m.volume);
+        method["not_converged"] = m.not_converged;
+        method["iterations"] = m.mean(m.iterations);
+        method["milliseconds"] = m.mean(m.milliseconds);
+        method["poses_with_intersection"] = m.poses_with_intersection;
+        method["poses_with_protrusion"] = m.poses_with_protrusion;
+        method["protrusion_max_mm"] = 1e3 * m.largest_protrusion;
+    }
+    AtomicFile file(path);
+    file.write(json.dump(2) + "\n");
+    file.commit();
+}
+
+}  // namespace examples

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// A body in layers with bones and muscles inside, and the poses to put it in.
+#pragma once
+
+#include <softtissue/anatomy/bone_interior.hpp>
+#include <softtissue/anatomy/make_layered_body.hpp>
+#include <softtissue/io/obj.hpp>
+#include <softtissue/io/smpl_file.hpp>
+#include <softtissue/mesh/embedding.hpp>
+#include <softtissue/model/procedural_anatomy.hpp>
+#include <softtissue/model/procedural_human.hpp>
+#include <softtissue/skinning/volumetric_smpl.hpp>
+
+#include <string>
+#include <vector>
+
+namespace examples {
+
+using namespace softtissue;
+using Scalar = double;
+
+struct Settings {
+    std::string body, motion, bones, muscles;
+    int poses = 6;
+    int seed = 0;
+    std::vector<std::string> methods{"fem", "lbs", "dqs", "gradient", "projective", "corotated"};
+    int threads = 1;
+    std::string out = "layered_body", json;
+};
+
+/// Bones or muscles as one surface that rides on the layers.
+struct EmbeddedSurface {
+    Triangles triangles;
+    Embedding<Scalar> embedding;
+};
+
+struct Scene {
+    SmplBody<Scalar> body;
+    VolumetricSmpl<Scalar> skin;  // of the whole body, without pose correctives: the cuts follow plain linear blending
+    LayeredBody<Scalar> layered;
+    BoneInterior<Scalar> interior;  // its first vertices are those of the layers
+    EmbeddedSurface bones, muscles;
+
+    /// Everything of one frame; x: the layers.
+    struct Frame {
+        Matrix3X<Scalar> skin, bones, muscles;
+    };
+
+    Frame frame(const Pose<Scalar>& pose, const Matrix3X<Scalar>& x) const {
+        const PosedBody<Scalar> posed = skin.pose(pose);
+        Frame result{posed.positions, Matrix3X<Scalar>(3, bones.embedding.num_points()),
+                     Matrix3X<Scalar>(3, muscles.embedding.num_points())};
+        for (Index c = 0; c < layered.num_columns(); ++c) {
+            const Index v = layered.region.body_vertices[size_t(c)];
+            result.skin.col(v) =
+                x.col(layered.layers.vertex(c, 2)) + posed.transforms[size_t(v)].linear * layered.skin_offsets.col(c);
+        }
+        Matrix3X<Scalar> all(3, interior.mesh.num_vertices());
+        all.leftCols(x.cols()) = x;
+        const LinearBlend<Scalar> policy;
+        for (Index v = x.cols(); v < all.cols(); ++v) {
+            all.col(v) = policy.blend(posed.prepared_joints, interior.weights.row(v))(interior.mesh.rest_positions.col(v));
+        }
+        bones.embedding.apply_into(all, result.bones);
+        muscles.embedding.apply_into(all, result.muscles);
+        return result;
+    }
+};
+
+/// All surfaces of one kind as one.
+inline ObjMesh<Scalar> joined(const std::vector<AnatomyMesh<Scalar>>& parts, AnatomyKind kind) {
+    ObjMesh<Scalar> whole;
+    for (const AnatomyMesh<Scalar>& part : parts) {
+        if (part.kind == kind) {
+            const Index vertices = whole.positions.cols();
+            whole.positions.conservativeResize(3, vertices + part.positions.cols());
+            whole.positions.rightCols(part.positions.cols()) = part.positions;
+            whole.triangles.conservativeResize(3, whole.triangles.cols() + part.triangles.cols());
+            whole.triangles.rightCols(part.triangles.cols()) = part.triangles.array() + int(vertices);
+        }
+    }
+    return whole;
+}
+
+inline Scene make_scene(const Settings& settings) {
+    SmplBody<Scalar> body =
+        settings.body.empty() ? procedural_human<Scalar>() : read_smpl_body<Scalar>(settings.body);
+    VolumetricSmpl<Scalar> skin(body, {}, {.pose_correctives = false});
+    LayeredBody<Scalar> layered = make_layered_body(body);
+    const Triangles& triangles = layered.region.triangles;
+    const Matrix3X<Scalar> bone_wrap = layered.level_positions(0);
+    MatrixX<Scalar> weights = layered.weights.dense();
+    MatrixX<Scalar> wrap_weights(layered.num_columns(), weights.cols());
+    for (Index c = 0; c < layered.num_columns(); ++c) {
+        wrap_weights.row(c) = weights.row(layered.layers.vertex(c, 0));
+    }
+    BoneInterior<Scalar> interior =
+        join_to_layers(make_bone_interior(bone_wrap, triangles, SkinningWeights<Scalar>(wrap_weights)), layered.layers,
+                       layered.mesh.rest_positions, layered.weights);
+    const auto parts = procedural_anatomy<Scalar>(skin.rest_joints(), bone_wrap, layered.level_positions(1), triangles,
+                                                  {.density = 0.6});
+    const auto embedded = [&](const std::string& file, AnatomyKind kind) {
+        const ObjMesh<Scalar> mesh = file.empty() ? joined(parts, kind) : read_obj<Scalar>(file);
+        return EmbeddedSurface{mesh.triangles, Embedding<Scalar>(mesh.positions, layered.mesh, interior.mesh)};
+    };
+    EmbeddedSurface bones = embedded(settings.bones, AnatomyKind::bone);
+    EmbeddedSurface muscles = embedded(settings.muscles, AnatomyKind::muscle);
+    return {std::move(body),     std::move(skin),  std::move(layered),
+            std::move(interior), std::move(bones), std::move(muscles)};
+}
+
+}  // namespace examples

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// A bent limb of bone, muscle and fat by every method: what the quasi-static reference keeps and the others lose.
+#include <softtissue/core/thread_executor.hpp>
+#include <softtissue/metric/gradient_error.hpp>
+#include <softtissue/metric/position_error.hpp>
+#include <softtissue/metric/volume_change.hpp>
+#include <softtissue/ndg/layered_animation.hpp>
+#include <softtissue/testing/random_states.hpp>
+
+#include <support/catch.hpp>
+#include <support/layered_limb.hpp>
+
+#include <array>
+
+using namespace softtissue;
+using namespace softtissue_test;
+
+namespace {
+
+constexpr std::array methods{AnimationMethod::fem,      AnimationMethod::lbs,        AnimationMethod::dqs,
+                             AnimationMethod::gradient, AnimationMethod::projective, AnimationMethod::corotated};
+
+}  // namespace
+
+TEST_CASE("a bent limb by all methods", "[layered]") {
+    const LayeredLimb<double> limb;
+    const ThreadExecutor executor(2);
+    LayeredAnimation<double, ThreadExecutor> animation(limb.body, {}, executor);
+    const auto transforms = limb.transforms(1.2);
+    const Matrix3X<double> skinned = limb.bent(1.2);
+    std::array<Matrix3X<double>, methods.size()> shapes;
+    std::array<double, methods.size()> volume{}, gradient{};
+    for (size_t k = 0; k < methods.size(); ++k) {
+        INFO(to_string(methods[k]));
+        CHECK(animation.pose_into(methods[k], transforms, shapes[k]).succeeded());
+        for (const std::int32_t v : limb.body.prescribed) {
+            CHECK(shapes[k].col(v) == skinned.col(v));
+        }
+        const VolumeChange<double> change = volume_change(limb.body.mesh, shapes[k]);
+        volume[k] = change.mean_square;
+        CHECK(change.num_inverted == 0);
+        gradient[k] = gradient_error(limb.body.mesh, animation.poisson().rest(), shapes[k], shapes[0]);
+        WARN(to_string(methods[k]) << ": E_pos "
+                                   << 1e3 * position_error(shapes[k], shapes[0], animation.poisson().prescribed()).mean
+                                   << " mm, E_grad " << gradient[k] << ", E_vol " << volume[k]);
+    }
+    CHECK(shapes[1] == skinned);
+    for (size_t k = 1; k < methods.size(); ++k) {
+        INFO(to_string(methods[k]));
+        CHECK(volume[0] < volume[k]);
+        CHECK(gradient[k] > 0);
+    }
+    CHECK(gradient[3] < gradient[1]);  // Gradient Skinning before linear blending
+    CHECK(volume[3] < volume[1]);
+
+    // the equilibrium of so mild a pose does not depend on the start
+    CHECK(animation.start_dependence(transforms, shapes[0]) < 1e-5);
+    // the same bits on one thread
+    const SequentialExecutor sequential;
+    LayeredAnimation<double, SequentialExecutor> alone(limb.body, {}, sequential);
+    for (size_t k = 0; k < methods.size(); ++k) {
+        Matrix3X<double> x;
+        INFO(to_string(methods[k]));
+        CHECK(alone.pose_into(methods[k], transforms, x).succeeded());
+        CHECK(x == shapes[k]);
+    }
+}
+
+TEST_CASE("a rigid motion of all joints is a rigid motion of the limb, by every method", "[layered]") {
+    const LayeredLimb<double> limb;
+    const SequentialExecutor executor;
+    LayeredAnimation<double, SequentialExecutor> animation(limb.body, {}, executor);
+    RandomGenerator random(5);
+    std::vector<AffineTransform<double>> transforms(2);
+    transforms[0] = transforms[1] = {random_rotation<double>(random), Vector3<double>(1, -2, 0.5)};
+    const Matrix3X<double> expected =
+        (transforms[0].linear * limb.body.mesh.rest_positions).colwise() + transforms[0].translation;
+    for (const AnimationMethod method : methods) {
+        Matrix3X<double> x;
+        INFO(to_string(method));
+        CHECK(animation.pose_into(method, transforms, x).succeeded());
+        CHECK((x - expected).cwiseAbs().maxCoeff() < 1e-9);
+    }
+}
+
+TEST_CASE("a solve that runs out of iterations says so and makes the start suspicious", "[layered]") {
+    const LayeredLimb<double> limb;
+    const SequentialExecutor executor;
+    LayeredAnimation<double, SequentialExecutor> animation(limb.body, {}, executor);
+    const auto transforms = limb.transforms(1.2);
+    NewtonOptions<double> options = quasi_static_options<double>();
+    options.max_iterations = 1;
+    Matrix3X<double> x;
+    CHECK(animation.pose_into(AnimationMethod::fem, transforms, x, options).status == SolveStatus::iteration_limit);
+    CHECK(std::isinf(animation.start_dependence(transforms, x, options)));
+}
