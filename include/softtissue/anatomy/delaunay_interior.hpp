@@ -114,7 +114,7 @@ struct DelaunayInterior {
                     ") belongs to triangle ", edge.triangles[0], " only, expected a closed surface");
         }
         const Matrix3X<double> points = to_grid(positions);
-        const WindingNumber<double> winding_number(points, triangles);
+        const WindingNumber<double> winding_number(points, triangles, 2.0);  // exact to 1e-2, enough to tell 0 from 1
         const Connectivity<4> all = delaunay_tetrahedra(points);
         const std::vector<bool> crossed = detail::crossed_tets(points, triangles, all);
         std::vector<Index> kept;

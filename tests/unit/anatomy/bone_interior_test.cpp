@@ -112,7 +112,7 @@ TEST_CASE_TEMPLATE("the inside of the wrap is filled and has the wrap's weights"
     const CapsuleWrap<S> wrap;
     const BoneInterior<S> interior = make_bone_interior(wrap.positions, wrap.layer.region.triangles, wrap.weights);
     const LayerBoundary<S> closed = close_cuts(wrap.positions, wrap.layer.region.triangles);
-    CHECK(interior.num_wrap_vertices == wrap.positions.cols());
+    CHECK(interior.num_given_vertices == wrap.positions.cols());
     CHECK(interior.mesh.rest_positions == closed.positions);
     CHECK(interior.weights.num_vertices() == closed.positions.cols());
     CHECK(interior.weights.num_joints() == 3);
@@ -157,6 +157,42 @@ TEST_CASE_TEMPLATE("one skinning call poses wrap and interior together", S, floa
     const Matrix3X<S> moved = posed(interior.mesh.rest_positions, interior.weights, joints);
     const Matrix3X<S> expected = (R * interior.mesh.rest_positions).colwise() + Vector3<S>(S(1), S(2), S(3));
     CHECK((moved - expected).cwiseAbs().maxCoeff() < S(16) * std::numeric_limits<S>::epsilon());
+}
+
+TEST_CASE_TEMPLATE("the interior shares the vertices of the layers around it", S, float, double) {
+    const CapsuleWrap<S> wrap;
+    const SoftLayer<S>& layer = wrap.layer;
+    const BoneInterior<S> interior = make_bone_interior(wrap.positions, layer.region.triangles, wrap.weights);
+    // The layers' own level 0 differs from inner_positions() by rounding; weights follow the height.
+    Matrix3X<S> rest = layer.mesh.rest_positions;
+    MatrixX<S> dense = MatrixX<S>::Zero(rest.cols(), 3);
+    for (Index i = 0; i < layer.num_columns(); ++i) {
+        rest.col(layer.layers.vertex(i, 0)) = wrap.positions.col(i);
+        for (Index level = 0; level < layer.layers.num_levels(); ++level) {
+            dense.row(layer.layers.vertex(i, level)) = wrap.weights.dense().row(i);
+        }
+    }
+    const SkinningWeights<S> weights(dense);
+    const BoneInterior<S> joined = join_to_layers(interior, layer.layers, rest, weights);
+    CHECK(joined.num_given_vertices == rest.cols());
+    CHECK(joined.mesh.num_vertices() == rest.cols() + 2);
+    CHECK(joined.mesh.rest_positions.leftCols(rest.cols()) == rest);
+    CHECK(joined.weights.num_vertices() == joined.mesh.num_vertices());
+    CHECK(joined.mesh.num_cells() == interior.mesh.num_cells());
+    const MatrixX<S> before = interior.weights.dense();
+    const MatrixX<S> after = joined.weights.dense();
+    bool is_same = true;
+    for (Index c = 0; c < joined.mesh.num_cells(); ++c) {
+        is_same = is_same && joined.mesh.rest_nodes(c) == interior.mesh.rest_nodes(c);
+        for (int k = 0; k < 4; ++k) {
+            is_same = is_same && after.row(joined.mesh.cells(k, c)) == before.row(interior.mesh.cells(k, c));
+        }
+    }
+    CHECK(is_same);
+
+    rest(0, layer.layers.vertex(3, 0)) += S(1e-3);
+    CHECK_THROWS_AS(join_to_layers(interior, layer.layers, rest, weights), InvalidInput);
+    CHECK_THROWS_AS(join_to_layers(interior, PrismLayers{7, 2}, rest, weights), InvalidInput);
 }
 
 TEST_CASE("what does not fit together is refused") {
