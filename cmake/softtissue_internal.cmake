@@ -16,11 +16,13 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
         -Wold-style-cast -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
 endif()
 
-# The library, every component that is present, threads and the warnings.
+# The library, every component that is present (told by SOFTTISSUE_HAS_<component>), threads and the warnings.
 add_library(softtissue_everything INTERFACE)
 target_link_libraries(softtissue_everything INTERFACE softtissue::softtissue softtissue_warnings Threads::Threads)
 foreach(component IN ITEMS io cholmod)
     if(softtissue_${component}_FOUND)
+        string(TOUPPER ${component} upper)
         target_link_libraries(softtissue_everything INTERFACE softtissue::${component})
+        target_compile_definitions(softtissue_everything INTERFACE SOFTTISSUE_HAS_${upper})
     endif()
 endforeach()

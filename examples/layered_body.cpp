@@ -5,6 +5,7 @@
 // (Nolte et al. 2026, tables 1 and 3, fig. 9).
 #include "layered_body/figures.hpp"
 #include "layered_body/pictures.hpp"
+#include "support/direct_cholesky.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/core/thread_executor.hpp>
@@ -78,7 +79,7 @@ int run_program(const Settings& settings) {
                                       : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
     const std::vector<Pose<Scalar>> poses = choose_poses(settings, motion);
     const ThreadExecutor executor(settings.threads);
-    LayeredAnimation<Scalar, ThreadExecutor> layered_animation(scene.layered, {}, executor);
+    LayeredAnimation<Scalar, ThreadExecutor, DirectCholesky> layered_animation(scene.layered, {}, executor);
     Animation animation(scene, settings.methods, std::max(1.0, double(poses.size()) / motion.duration()));
 
     Figures figures;

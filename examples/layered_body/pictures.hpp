@@ -60,11 +60,11 @@ inline void write_comparison(const std::filesystem::path& path, const Scene& sce
     const int columns = int(shots.size());
     Picture picture(std::max(760, width * columns), top + 2 * height + 60);
     picture.text(title, 20, 36, 24);
-    const Matrix3X<Scalar>& first = shots.front().frame.skin;
-    const Vector3<Scalar> low = first.rowwise().minCoeff(), high = first.rowwise().maxCoeff();
-    const Vector3<Scalar> center = 0.5 * (low + high);
-    const double scale = std::min(0.94 * width / (high - low).head<2>().norm() * 1.35, 0.96 * height / (high(1) - low(1)));
     const View view(-0.35, 0.08);
+    const Matrix3X<Scalar>& first = shots.front().frame.skin;
+    const Vector3<Scalar> center = 0.5 * (first.rowwise().minCoeff() + first.rowwise().maxCoeff());
+    const Matrix3X<Scalar> seen = view.rotation * (first.colwise() - center);
+    const double scale = 0.47 * std::min(width / seen.row(0).cwiseAbs().maxCoeff(), height / seen.row(1).cwiseAbs().maxCoeff());
     const auto plain = [](Index n, const Eigen::Vector3f& color) { return Matrix3X<float>(color.replicate(1, n)); };
     for (int k = 0; k < columns; ++k) {
         const Shot& shot = shots[size_t(k)];

@@ -5,7 +5,6 @@
 #include <softtissue/metric/position_error.hpp>
 #include <softtissue/metric/volume_change.hpp>
 #include <softtissue/ndg/layered_animation.hpp>
-#include <softtissue/testing/random_states.hpp>
 
 #include <support/catch.hpp>
 #include <support/layered_limb.hpp>
@@ -64,33 +63,4 @@ TEST_CASE("a bent limb by all methods", "[layered]") {
         CHECK(alone.pose_into(methods[k], transforms, x).succeeded());
         CHECK(x == shapes[k]);
     }
-}
-
-TEST_CASE("a rigid motion of all joints is a rigid motion of the limb, by every method", "[layered]") {
-    const LayeredLimb<double> limb;
-    const SequentialExecutor executor;
-    LayeredAnimation<double, SequentialExecutor> animation(limb.body, {}, executor);
-    RandomGenerator random(5);
-    std::vector<AffineTransform<double>> transforms(2);
-    transforms[0] = transforms[1] = {random_rotation<double>(random), Vector3<double>(1, -2, 0.5)};
-    const Matrix3X<double> expected =
-        (transforms[0].linear * limb.body.mesh.rest_positions).colwise() + transforms[0].translation;
-    for (const AnimationMethod method : methods) {
-        Matrix3X<double> x;
-        INFO(to_string(method));
-        CHECK(animation.pose_into(method, transforms, x).succeeded());
-        CHECK((x - expected).cwiseAbs().maxCoeff() < 1e-9);
-    }
-}
-
-TEST_CASE("a solve that runs out of iterations says so and makes the start suspicious", "[layered]") {
-    const LayeredLimb<double> limb;
-    const SequentialExecutor executor;
-    LayeredAnimation<double, SequentialExecutor> animation(limb.body, {}, executor);
-    const auto transforms = limb.transforms(1.2);
-    NewtonOptions<double> options = quasi_static_options<double>();
-    options.max_iterations = 1;
-    Matrix3X<double> x;
-    CHECK(animation.pose_into(AnimationMethod::fem, transforms, x, options).status == SolveStatus::iteration_limit);
-    CHECK(std::isinf(animation.start_dependence(transforms, x, options)));
 }

@@ -13,6 +13,7 @@
 #include <softtissue/model/bone_lofts.hpp>
 #include <softtissue/model/human_solid.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace softtissue {
@@ -45,7 +46,8 @@ private:
         bulb(thigh, .975, 13, -6, {11, 20, 17});
         bulb(thigh, .975, -13, -6, {11, 20, 18});
         start("patella");
-        bulb(thigh, .965, 0, 24, {14, 6, 17});
+        const double room = body_.bone_distance(thigh.origin(.965), thigh.front()) / mm_;
+        bulb(thigh, .965, 0, std::min(24.0, room - 9.0), {14, 6, 16});
 
         const BodyChart shank = BodyChart::limb(body_, knee, ankle, 1.0);
         start("tibia");

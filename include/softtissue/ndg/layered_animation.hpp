@@ -10,7 +10,7 @@
 ///             corotated  linear elasticity in the blended rotation of the bones
 /// Boundary    the bone wrap and the cuts by linear blend skinning with the body's weights, the same for every method
 /// Source      Nolte et al. 2026, sec. 3.2, 4.2, 4.3, 5.2
-/// Tests       tests/scenario/layered_animation_test.cpp
+/// Tests       tests/unit/ndg/layered_animation_test.cpp, tests/scenario/layered_animation_test.cpp
 #pragma once
 
 #include <softtissue/anatomy/layered_body.hpp>
