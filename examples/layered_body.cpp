@@ -15,18 +15,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <exception>
 
 namespace {
 
 using namespace examples;
 
-constexpr std::array all_methods{AnimationMethod::fem,      AnimationMethod::lbs,        AnimationMethod::dqs,
-                                 AnimationMethod::gradient, AnimationMethod::projective, AnimationMethod::corotated};
-
 AnimationMethod method_of(const std::string& name) {
-    return *std::find_if(all_methods.begin(), all_methods.end(),
+    return *std::find_if(all_animation_methods.begin(), all_animation_methods.end(),
                          [&](AnimationMethod method) { return name == to_string(method); });
 }
 

@@ -12,7 +12,7 @@
 #include <softtissue/material/stable_neo_hookean.hpp>
 
 #include <support/catch.hpp>
-#include <unit/anatomy/capsule_body.hpp>
+#include <support/capsule_body.hpp>
 #include <unit/io/io_test_support.hpp>
 
 #include <functional>

@@ -25,6 +25,7 @@
 #include <softtissue/solver/local_global.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -32,6 +33,10 @@
 namespace softtissue {
 
 enum class AnimationMethod { fem, lbs, dqs, gradient, projective, corotated };
+
+inline constexpr std::array all_animation_methods{AnimationMethod::fem,        AnimationMethod::lbs,
+                                                  AnimationMethod::dqs,        AnimationMethod::gradient,
+                                                  AnimationMethod::projective, AnimationMethod::corotated};
 
 /// The method's name, as in the enumeration.
 constexpr const char* to_string(AnimationMethod method) {

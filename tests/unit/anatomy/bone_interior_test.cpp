@@ -6,7 +6,7 @@
 #include <softtissue/mesh/validate_surface.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@
 #ifdef SOFTTISSUE_HAS_TETGEN
 #include <softtissue/io/smpl_file.hpp>
 
-#include "tetgen_mesher.hpp"
+#include <support/tetgen_mesher.hpp>
 #endif
 
 using namespace softtissue;

@@ -5,7 +5,7 @@
 #include <softtissue/model/human_mesh.hpp>
 #include <softtissue/testing/random_states.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

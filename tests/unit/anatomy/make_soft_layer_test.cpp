@@ -6,7 +6,7 @@
 #include <softtissue/model/procedural_human.hpp>
 #include <softtissue/testing/random_states.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include <softtissue/testing/random_states.hpp>
 
 #include "../mesh/small_meshes.hpp"
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

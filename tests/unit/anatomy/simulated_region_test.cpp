@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/anatomy/simulated_region.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

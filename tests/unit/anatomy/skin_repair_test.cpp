@@ -3,7 +3,7 @@
 
 #include <softtissue/anatomy/simulated_region.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 #include <softtissue/mesh/split_prisms.hpp>
 #include <softtissue/mesh/validate_surface.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 
@@ -16,7 +16,7 @@
 #ifdef SOFTTISSUE_HAS_TETGEN
 #include <softtissue/io/smpl_file.hpp>
 
-#include <tetgen.h>
+#include <support/tetgen_mesher.hpp>
 #endif
 
 using namespace softtissue;
@@ -42,43 +42,6 @@ struct SplitColumns {
         return {positions, split_prisms(prisms).cells};
     }
 };
-
-#ifdef SOFTTISSUE_HAS_TETGEN
-/// TetGen with the boundary kept (-pYY, quiet).
-struct TetGen {
-    Tetrahedralisation<double> operator()(const Matrix3X<double>& positions, const Triangles& triangles) const {
-        tetgenio in;
-        tetgenio out;
-        in.numberofpoints = int(positions.cols());
-        in.pointlist = new REAL[size_t(positions.size())];
-        std::copy(positions.data(), positions.data() + positions.size(), in.pointlist);
-        in.numberoffacets = int(triangles.cols());
-        in.facetlist = new tetgenio::facet[size_t(triangles.cols())];
-        for (Index t = 0; t < triangles.cols(); ++t) {
-            tetgenio::facet& facet = in.facetlist[t];
-            tetgenio::init(&facet);
-            facet.numberofpolygons = 1;
-            facet.polygonlist = new tetgenio::polygon[1];
-            tetgenio::init(facet.polygonlist);
-            facet.polygonlist->numberofvertices = 3;
-            facet.polygonlist->vertexlist = new int[3]{triangles(0, t), triangles(1, t), triangles(2, t)};
-        }
-        std::string switches = "pYYQ";
-        tetrahedralize(switches.data(), &in, &out);
-        Tetrahedralisation<double> result{
-            Eigen::Map<const Matrix3X<double>>(out.pointlist, 3, out.numberofpoints),
-            Eigen::Map<const Connectivity<4>>(out.tetrahedronlist, 4, out.numberoftetrahedra)};
-        for (Index c = 0; c < result.tets.cols(); ++c) {
-            const NodePositions<Tet4, double> nodes =
-                CellMesh<Tet4, double>::gather(result.positions, result.tets.col(c));
-            if (Tet4::rest_volume(nodes) < 0) {
-                std::swap(result.tets(0, c), result.tets(1, c));
-            }
-        }
-        return result;
-    }
-};
-#endif
 
 }  // namespace
 
@@ -153,7 +116,7 @@ TEST_CASE("TetGen fills the layer of a real body") {
         return;
     }
     const SoftLayer<double> layer = make_soft_layer(read_smpl_body<double>(path));
-    const TetrahedralLayer<double> tets = tetrahedralise_layer(layer, TetGen{});
+    const TetrahedralLayer<double> tets = tetrahedralise_layer(layer, TetGenMesher{});
     const LayerBoundary<double> boundary = make_layer_boundary(layer);
     double volume = 0;
     for (Index c = 0; c < tets.mesh.num_cells(); ++c) {

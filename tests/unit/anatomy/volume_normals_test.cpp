@@ -5,7 +5,7 @@
 #include <softtissue/anatomy/orthotropy_basis.hpp>
 #include <softtissue/mesh/split_prisms.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include <softtissue/anatomy/skin_repair.hpp>
 #include <softtissue/testing/random_states.hpp>
 
-#include "capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 
 #include <softtissue/testing/random_states.hpp>
 
-#include "../anatomy/capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

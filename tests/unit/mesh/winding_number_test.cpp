@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/mesh/winding_number.hpp>
 
-#include "../anatomy/capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/testing/random_states.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/metric/intersection.hpp>
 
-#include "../anatomy/capsule_body.hpp"
+#include <support/capsule_body.hpp>
 
 #include <doctest/doctest.h>
 

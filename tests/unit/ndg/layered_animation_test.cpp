@@ -7,18 +7,10 @@
 
 #include <doctest/doctest.h>
 
-#include <array>
 #include <cmath>
 
 using namespace softtissue;
 using namespace softtissue_test;
-
-namespace {
-
-constexpr std::array methods{AnimationMethod::fem,      AnimationMethod::lbs,        AnimationMethod::dqs,
-                             AnimationMethod::gradient, AnimationMethod::projective, AnimationMethod::corotated};
-
-}  // namespace
 
 TEST_CASE("a rigid motion of all joints is a rigid motion of the limb, by every method") {
     const LayeredLimb<double> limb;
@@ -29,7 +21,7 @@ TEST_CASE("a rigid motion of all joints is a rigid motion of the limb, by every 
     transforms[0] = transforms[1] = {random_rotation<double>(random), Vector3<double>(1, -2, 0.5)};
     const Matrix3X<double> expected =
         (transforms[0].linear * limb.body.mesh.rest_positions).colwise() + transforms[0].translation;
-    for (const AnimationMethod method : methods) {
+    for (const AnimationMethod method : all_animation_methods) {
         Matrix3X<double> x;
         CAPTURE(to_string(method));
         CHECK(animation.pose_into(method, transforms, x).succeeded());
