@@ -90,13 +90,8 @@ inline Scene make_scene(const Settings& settings) {
     LayeredBody<Scalar> layered = make_layered_body(body);
     const Triangles& triangles = layered.region.triangles;
     const Matrix3X<Scalar> bone_wrap = layered.level_positions(0);
-    MatrixX<Scalar> weights = layered.weights.dense();
-    MatrixX<Scalar> wrap_weights(layered.num_columns(), weights.cols());
-    for (Index c = 0; c < layered.num_columns(); ++c) {
-        wrap_weights.row(c) = weights.row(layered.layers.vertex(c, 0));
-    }
     BoneInterior<Scalar> interior =
-        join_to_layers(make_bone_interior(bone_wrap, triangles, SkinningWeights<Scalar>(wrap_weights)), layered.layers,
+        join_to_layers(make_bone_interior(bone_wrap, triangles, layered.column_weights()), layered.layers,
                        layered.mesh.rest_positions, layered.weights);
     const auto parts = procedural_anatomy<Scalar>(skin.rest_joints(), bone_wrap, layered.level_positions(1), triangles,
                                                   {.density = 0.6});

@@ -145,6 +145,17 @@ struct LayeredBody {
 
     /// Rest positions of one level, 3 x columns: 0 bone wrap, 1 muscle wrap, 2 skin.
     Matrix3X<S> level_positions(Index level) const { return layers.level_positions(mesh.rest_positions, level); }
+
+    /// Weights of the columns, one row each; those of every level.
+    SkinningWeights<S> column_weights() const {
+        MatrixX<S> dense = MatrixX<S>::Zero(num_columns(), weights.num_joints());
+        for (Index c = 0; c < num_columns(); ++c) {
+            for (const auto& [joint, weight] : weights.row(layers.vertex(c, 0))) {
+                dense(c, joint) = weight;
+            }
+        }
+        return SkinningWeights<S>(dense);
+    }
 };
 
 /// Volume inside an open surface whose boundary loops are closed by fans around their centres [m^3].

@@ -66,6 +66,19 @@ TEST_CASE_TEMPLATE("a layer is measured", S, float, double) {
     CHECK(reversed.smallest_relative_coefficient < S(0));
 }
 
+TEST_CASE("the weights of a column are those of its vertices") {
+    LayeredBody<double> body;
+    body.layers.num_columns = 2;
+    MatrixX<double> dense(6, 3);
+    dense.topRows(3).rowwise() = Eigen::RowVector3d(0.25, 0.75, 0);
+    dense.bottomRows(3).rowwise() = Eigen::RowVector3d(0, 0, 1);
+    body.weights = SkinningWeights<double>(dense);
+    const MatrixX<double> columns = body.column_weights().dense();
+    REQUIRE(columns.rows() == 2);
+    CHECK(columns.row(0) == dense.row(0));
+    CHECK(columns.row(1) == dense.row(5));
+}
+
 TEST_CASE("options out of range are refused") {
     LayeredBodyOptions<double> options;
     const auto message = [&] {
