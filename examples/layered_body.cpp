@@ -53,8 +53,8 @@ void examine_boundary(const Scene& scene, const Matrix3X<Scalar>& x, std::span<c
                       Figures& figures) {
     const PosedWrapReport<Scalar> wrap =
         examine_posed_wrap<Scalar>(scene.layered, scene.layered.layers.level_positions(x, 0), transforms);
-    figures.folded_triangles = std::max(figures.folded_triangles, wrap.folded_triangles);
-    figures.infeasible_vertices = std::max(figures.infeasible_vertices, wrap.infeasible_vertices);
+    figures.folded_triangles.push_back(wrap.folded_triangles);
+    figures.infeasible_vertices.push_back(wrap.infeasible_vertices);
 }
 
 int run_program(const Settings& settings) {

@@ -39,7 +39,7 @@ struct Figures {
     int poses = 0;
     bool has_reference = false;  // FEM is among the methods
     std::vector<int> start_dependent_poses;
-    Index folded_triangles = 0, infeasible_vertices = 0;  // of the bone wrap, most in a pose
+    std::vector<Index> folded_triangles, infeasible_vertices;  // of the bone wrap, per pose
     bool interrupted = false;
 };
 
@@ -85,8 +85,11 @@ inline void print_figures(const Figures& figures) {
                     m.not_converged, m.mean(m.milliseconds), m.poses_with_intersection, m.poses_with_protrusion,
                     1e3 * m.largest_protrusion);
     }
+    const auto most = [](const std::vector<Index>& counts) {
+        return counts.empty() ? 0 : int(*std::max_element(counts.begin(), counts.end()));
+    };
     std::printf("\nbone wrap: at most %d folded triangles and %d vertices without room for muscle in a pose\n",
-                int(figures.folded_triangles), int(figures.infeasible_vertices));
+                most(figures.folded_triangles), most(figures.infeasible_vertices));
     if (figures.has_reference) {
         std::printf("poses with several equilibria (another start ends more than %.1f mm away on average): %d\n",
                     1e3 * start_tolerance, int(figures.start_dependent_poses.size()));
@@ -112,7 +115,7 @@ inline void write_figures(const std::filesystem::path& path, const Figures& figu
           {"muscle_vertices", scene.muscles.embedding.num_points()},
           {"muscle_vertices_outside", scene.muscles.embedding.report().num_outside}}},
         {"bone_wrap",
-         {{"folded_triangles_max", figures.folded_triangles}, {"infeasible_vertices_max", figures.infeasible_vertices}}},
+         {{"folded_triangles", figures.folded_triangles}, {"infeasible_vertices", figures.infeasible_vertices}}},
         {"start_dependent_poses", figures.start_dependent_poses},
         {"interrupted", figures.interrupted}};
     for (const MethodFigures& m : figures.methods) {
