@@ -42,7 +42,7 @@ struct Scene {
     BoneInterior<Scalar> interior;  // its first vertices are those of the layers
     EmbeddedSurface bones, muscles;
 
-    /// Everything of one frame; x: the layers.
+    /// Everything of one frame; x: the layers. The skin is that of the layers, mended where no layer could exist below it.
     struct Frame {
         Matrix3X<Scalar> skin, bones, muscles;
     };
@@ -52,9 +52,7 @@ struct Scene {
         Frame result{posed.positions, Matrix3X<Scalar>(3, bones.embedding.num_points()),
                      Matrix3X<Scalar>(3, muscles.embedding.num_points())};
         for (Index c = 0; c < layered.num_columns(); ++c) {
-            const Index v = layered.region.body_vertices[size_t(c)];
-            result.skin.col(v) =
-                x.col(layered.layers.vertex(c, 2)) + posed.transforms[size_t(v)].linear * layered.skin_offsets.col(c);
+            result.skin.col(layered.region.body_vertices[size_t(c)]) = x.col(layered.layers.vertex(c, 2));
         }
         Matrix3X<Scalar> all(3, interior.mesh.num_vertices());
         all.leftCols(x.cols()) = x;
