@@ -15,9 +15,9 @@ namespace softtissue_test {
 
 /// The arrays of reference/`name`, or nothing and a message.
 inline std::optional<softtissue::NpzFile> reference_case(const std::string& name) {
-    const std::string path = std::string(SOFTTISSUE_SHARED_DIR) + "/reference/" + name;
+    const std::filesystem::path path = std::filesystem::path(SOFTTISSUE_SHARED_DIR) / "reference" / name;
     if (!std::filesystem::exists(path)) {
-        MESSAGE("skipped: ", path, " is not there");
+        MESSAGE("skipped: ", path.string(), " is not there");
         return std::nullopt;
     }
     return softtissue::read_npz(path);
