@@ -56,10 +56,10 @@ private:
         const Vector3<double> inside = 0.5 * (S + C);
         const double t_sternum = 0.85;
         const Vector3<double> inner_end = chest(t_sternum, 12, 1.0);
-        const std::vector<Vector3<double>> path{inner_end, inner_end + 0.3 * (S - inner_end) + mm_ * Vector3<double>(0, 5, 10),
-                                                inner_end + 0.65 * (S - inner_end) + mm_ * Vector3<double>(0, 14, -2),
-                                                S + mm_ * Vector3<double>(-8, 17, -4),
-                                                S + mm_ * Vector3<double>(6, 15, -8)};
+        const std::vector<Vector3<double>> path{
+            inner_end, inner_end + 0.3 * (S - inner_end) + mm_ * Vector3<double>(0, 5, 10),
+            inner_end + 0.65 * (S - inner_end) + mm_ * Vector3<double>(0, 14, -2),
+            S + mm_ * Vector3<double>(-8, 17, -4), S + mm_ * Vector3<double>(6, 15, -8)};
         start("clavicle");
         const Vector3<double> along = (S - inner_end).normalized();
         const Vector3<double> up = (Vector3<double>::UnitY() - along(1) * along).normalized();
