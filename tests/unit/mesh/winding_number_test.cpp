@@ -117,7 +117,9 @@ TEST_CASE("far clusters keep the error that the separation promises") {
     Matrix3X<double> points(3, 600);
     points << points_around<double>(300, 3), points_near(body.positions, body.faces, 300);
     double previous = 1;
-    for (const auto& [separation, promised] : {std::pair(2.0, 1.5e-2), std::pair(4.0, 1e-3), std::pair(8.0, 5e-5)}) {
+    for (const auto& row : {std::pair(2.0, 1.5e-2), std::pair(4.0, 1e-3), std::pair(8.0, 5e-5)}) {
+        const auto separation = row.first;
+        const auto promised = row.second;
         CAPTURE(separation);
         const double closed_error = largest_error({body.positions, body.faces, separation}, points);
         const double open_error = largest_error({body.positions, open, separation}, points);
