@@ -48,7 +48,9 @@ TEST_CASE("the right half mirrors the left") {
         meshes.emplace(mesh.name, mesh);
     }
     Index pairs = 0;
-    for (const auto& [name, left] : meshes) {
+    for (const auto& named : meshes) {
+        const std::string& name = named.first;
+        const AnatomyMesh<double>& left = named.second;
         if (name.rfind("left_", 0) == 0) {
             const AnatomyMesh<double>& right = meshes.at("right_" + name.substr(5));
             Matrix3X<double> image = left.positions;
