@@ -1,76 +1,25 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// Reproducible random numbers, rotations and deformation gradients: the same bits on every platform.
+/// Reproducible random rotations and deformation gradients: the same bits on every platform.
 ///
-/// What        RandomGenerator, random_rotation, random_unit, StateClass, random_state
+/// What        random_normal, random_rotation, random_unit, StateClass, random_state
 /// Equation    F = U diag(s) V^T with U, V uniform rotations and singular values s drawn per class
 /// Valid       every state keeps s2 + s3 >= 0.1 (s3 signed like det F), so that its rotation is well defined
-/// Source      Blackman, Vigna 2021, "Scrambled Linear Pseudorandom Number Generators" (xoshiro256++);
-///             seeding by splitmix64
-/// Departs     normal() is a sum of twelve uniform numbers: no library function, hence the same bits everywhere;
-///             consequence: its tails end at +-6
 /// Tests       tests/unit/testing/random_states_test.cpp
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/random.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <string_view>
 
 namespace softtissue {
-
-/// xoshiro256++; equal seeds give equal sequences.
-class RandomGenerator {
-public:
-    explicit RandomGenerator(std::uint64_t seed) {
-        for (std::uint64_t& word : state_) {
-            seed += 0x9e3779b97f4a7c15U;
-            word = (seed ^ (seed >> 30U)) * 0xbf58476d1ce4e5b9U;
-            word = (word ^ (word >> 27U)) * 0x94d049bb133111ebU;
-            word ^= word >> 31U;
-        }
-    }
-
-    /// 64 uniform bits.
-    std::uint64_t bits() {
-        const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
-        const std::uint64_t shifted = state_[1] << 17U;
-        state_[2] ^= state_[0];
-        state_[3] ^= state_[1];
-        state_[1] ^= state_[2];
-        state_[0] ^= state_[3];
-        state_[2] ^= shifted;
-        state_[3] = std::rotl(state_[3], 45);
-        return result;
-    }
-
-    /// Uniform in [0, 1), a multiple of 2^-53.
-    double uniform() { return double(bits() >> 11U) * 0x1p-53; }
-
-    /// Uniform in [low, high).
-    double uniform(double low, double high) { return low + (high - low) * uniform(); }
-
-    /// Mean 0, variance 1, |x| <= 6.
-    double normal() {
-        double sum = -6;
-        for (int i = 0; i < 12; ++i) {
-            sum += uniform();
-        }
-        return sum;
-    }
-
-    /// Uniform in 0 .. count - 1 (count > 0).
-    Index index(Index count) { return Index(uniform() * double(count)); }
-
-private:
-    std::array<std::uint64_t, 4> state_{};
-};
 
 /// A matrix or vector of independent normal() entries.
 template <class Matrix>
