@@ -1,4 +1,5 @@
-# What tests, examples and benchmarks share: warnings, the libraries that are present, ccache. None of it is exported.
+# What tests, examples and benchmarks share: warnings, the libraries that are present, ccache, and for programs that
+# are timed this machine's instructions. None of it is exported.
 find_package(Threads REQUIRED)
 
 if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
@@ -26,3 +27,27 @@ foreach(component IN ITEMS io cholmod)
         target_compile_definitions(softtissue_everything INTERFACE SOFTTISSUE_HAS_${upper})
     endif()
 endforeach()
+
+# Examples and benchmarks use all instructions of this machine (SOFTTISSUE_NATIVE), tests those of every machine. With
+# wider vectors Eigen aligns its types otherwise, hence a program must be of one kind throughout: CMake refuses a target
+# that links both softtissue_for_this_machine and softtissue_for_every_machine.
+include(CheckCXXCompilerFlag)
+set(native_default OFF)
+if(NOT CMAKE_CROSSCOMPILING)
+    check_cxx_compiler_flag(-march=native SOFTTISSUE_COMPILER_KNOWS_NATIVE)
+    if(SOFTTISSUE_COMPILER_KNOWS_NATIVE)
+        set(native_default ON)
+    endif()
+endif()
+option(SOFTTISSUE_NATIVE "Compile examples and benchmarks for this machine (-march=native)" ${native_default})
+
+foreach(machine IN ITEMS this every)
+    add_library(softtissue_for_${machine}_machine INTERFACE)
+    target_link_libraries(softtissue_for_${machine}_machine INTERFACE softtissue_everything)
+    set_target_properties(softtissue_for_${machine}_machine PROPERTIES
+        COMPATIBLE_INTERFACE_STRING SOFTTISSUE_MACHINE
+        INTERFACE_SOFTTISSUE_MACHINE ${machine})
+endforeach()
+if(SOFTTISSUE_NATIVE)
+    target_compile_options(softtissue_for_this_machine INTERFACE -march=native)
+endif()
