@@ -42,13 +42,16 @@ public:
 
     /// `align`: 0 left, 0.5 centred, 1 right at x; y is the baseline.
     void text(const std::string& words, double x, double y, double size, double align = 0.0) {
-        cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-        cairo_set_font_size(cairo_.get(), size);
+        cairo_move_to(cairo_.get(), x - align * text_width(words, size), y);
         cairo_set_source_rgb(cairo_.get(), 0.15, 0.15, 0.15);
+        cairo_show_text(cairo_.get(), words.c_str());
+    }
+
+    double text_width(const std::string& words, double size) {
+        select_font(size);
         cairo_text_extents_t extents;
         cairo_text_extents(cairo_.get(), words.c_str(), &extents);
-        cairo_move_to(cairo_.get(), x - align * extents.x_advance, y);
-        cairo_show_text(cairo_.get(), words.c_str());
+        return extents.x_advance;
     }
 
     void rectangle(double x, double y, double width, double height, const Eigen::Vector3f& color) {
@@ -90,6 +93,11 @@ public:
     }
 
 private:
+    void select_font(double size) {
+        cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+        cairo_set_font_size(cairo_.get(), size);
+    }
+
     struct Raster {
         int width, height;
         std::vector<double> depth;
