@@ -63,7 +63,7 @@ public:
             file_ = std::fopen(temporary_.string().c_str(), "wb");
             require_done(file_ != nullptr);
         }
-        require_done(std::fwrite(data, 1, size, file_) == size);
+        require_done(size == 0 || std::fwrite(data, 1, size, file_) == size);
     }
 
     void write(std::string_view text) { write(text.data(), text.size()); }
