@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// The fastest sparse factorisation that was found when this program was built.
+/// The fastest sparse factorisation of solid meshes.
 #pragma once
 
-#ifdef SOFTTISSUE_HAS_CHOLMOD
-#include <softtissue/sparse/cholmod.hpp>
-#else
-#include <softtissue/sparse/default_cholesky.hpp>
-#endif
+#include <softtissue/sparse/supernodal_cholesky.hpp>
 
 namespace examples {
 
-#ifdef SOFTTISSUE_HAS_CHOLMOD
-using DirectCholesky = softtissue::CholmodCholesky;
-#else
-using DirectCholesky = softtissue::DefaultCholesky<double>;
-#endif
+using DirectCholesky = softtissue::SupernodalCholesky<double>;
 
 }  // namespace examples
