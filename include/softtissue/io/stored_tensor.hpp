@@ -40,6 +40,11 @@ constexpr std::size_t size_of(TensorType type) {
     return sizes[std::size_t(type)];
 }
 
+/// Is it a floating-point type?
+constexpr bool is_real(TensorType type) {
+    return type <= TensorType::bf16;
+}
+
 class StoredTensor {
 public:
     /// Stands for "any extent" in require_shape().
