@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// 3x3 matrices in plain arithmetic, one or sixteen at a time: compilers turn sixteen into lanes.
+///
+/// What        Matrix3Entries: nine numbers and their product; Matrix3Lanes: sixteen matrices, entry by entry;
+///             for_each_lane_block: a loop over the columns of a 9 x n array, sixteen at a time
+/// Shapes      nine entries row after row, or column after column, as long as all are alike
+/// Why         a loop over lanes whose body is straight arithmetic on Matrix3Entries vectorises; one over Eigen's does not
+/// Threads     the same blocks for every executor
+/// Tests       tests/unit/linalg/matrix3_entries_test.cpp
+#pragma once
+
+#include <softtissue/core/executor.hpp>
+#include <softtissue/core/notation.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace softtissue {
+
+template <class S>
+struct Matrix3Entries {
+    S e[9];
+};
+
+/// a b, row after row (b a, column after column).
+template <class S>
+Matrix3Entries<S> product(const Matrix3Entries<S>& a, const Matrix3Entries<S>& b) {
+    return {{a.e[0] * b.e[0] + a.e[1] * b.e[3] + a.e[2] * b.e[6], a.e[0] * b.e[1] + a.e[1] * b.e[4] + a.e[2] * b.e[7],
+             a.e[0] * b.e[2] + a.e[1] * b.e[5] + a.e[2] * b.e[8], a.e[3] * b.e[0] + a.e[4] * b.e[3] + a.e[5] * b.e[6],
+             a.e[3] * b.e[1] + a.e[4] * b.e[4] + a.e[5] * b.e[7], a.e[3] * b.e[2] + a.e[4] * b.e[5] + a.e[5] * b.e[8],
+             a.e[6] * b.e[0] + a.e[7] * b.e[3] + a.e[8] * b.e[6], a.e[6] * b.e[1] + a.e[7] * b.e[4] + a.e[8] * b.e[7],
+             a.e[6] * b.e[2] + a.e[7] * b.e[5] + a.e[8] * b.e[8]}};
+}
+
+template <class S>
+struct Matrix3Lanes {
+    static constexpr Index lanes = 16;
+    alignas(64) S e[9][lanes];
+
+    /// `count` columns of a 9 x n array that lie `stride` apart, and zeros for the other lanes.
+    void load(const S* columns, Index stride, Index count) {
+        for (Index lane = 0; lane < lanes; ++lane) {
+            for (int i = 0; i < 9; ++i) {
+                e[i][lane] = lane < count ? columns[stride * lane + i] : S(0);
+            }
+        }
+    }
+
+    void store(S* columns, Index stride, Index count) const {
+        for (Index lane = 0; lane < count; ++lane) {
+            for (int i = 0; i < 9; ++i) {
+                columns[stride * lane + i] = e[i][lane];
+            }
+        }
+    }
+
+    void transpose() {
+        std::swap(e[1], e[3]);
+        std::swap(e[2], e[6]);
+        std::swap(e[5], e[7]);
+    }
+
+    Matrix3Entries<S> lane(Index l) const {
+        return {{e[0][l], e[1][l], e[2][l], e[3][l], e[4][l], e[5][l], e[6][l], e[7][l], e[8][l]}};
+    }
+
+    void set_lane(Index l, const Matrix3Entries<S>& M) {
+        for (int i = 0; i < 9; ++i) {
+            e[i][l] = M.e[i];
+        }
+    }
+};
+
+/// body(first column, number of columns) for blocks of at most sixteen columns.
+template <class E, class Body>
+void for_each_lane_block(const E& executor, Index columns, const Body& body) {
+    constexpr Index lanes = Matrix3Lanes<float>::lanes;
+    executor.for_each_range((columns + lanes - 1) / lanes, [&](Index begin, Index end) {
+        for (Index block = begin; block < end; ++block) {
+            body(lanes * block, std::min(lanes, columns - lanes * block));
+        }
+    });
+}
+
+}  // namespace softtissue
