@@ -4,8 +4,8 @@
 // A layered anatomical body in many poses: the quasi-static reference beside the methods that avoid its cost
 // (Nolte et al. 2026, tables 1 and 3, fig. 9).
 #include "layered_body/figures.hpp"
-#include "layered_body/pictures.hpp"
 #include "support/direct_cholesky.hpp"
+#include "support/layered_pictures.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/core/thread_executor.hpp>
@@ -20,6 +20,16 @@
 namespace {
 
 using namespace examples;
+
+struct Settings {
+    SceneFiles files;
+    std::string motion;
+    int poses = 6;
+    int seed = 0;
+    std::vector<std::string> methods{"fem", "lbs", "dqs", "gradient", "projective", "corotated"};
+    int threads = 1;
+    std::string out = "layered_body", json;
+};
 
 AnimationMethod method_of(const std::string& name) {
     return *std::find_if(all_animation_methods.begin(), all_animation_methods.end(),
@@ -61,7 +71,7 @@ int run_program(const Settings& settings) {
     watch_interrupt();
     std::filesystem::create_directories(settings.out);
     const std::filesystem::path folder(settings.out);
-    const Scene scene = make_scene(settings);
+    const Scene scene = make_scene(settings.files);
     const LayeredBodyReport<Scalar>& rest = scene.layered.report;
     std::fprintf(stderr,
                  "%d prisms; bone %.1f l, muscle %.1f l, fat %.1f l; inverted at rest %d, smallest scaled Jacobian %.3f and %.3f\n"
@@ -144,15 +154,15 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App app("A layered anatomical body in many poses, by the quasi-static reference and by the methods that avoid its cost. "
                  "Without arguments: the embedded body and motion.");
-    app.add_option("--body", settings.body, "body in SMPL's layout (.npz)");
+    app.add_option("--body", settings.files.body, "body in SMPL's layout (.npz)");
     app.add_option("--motion", settings.motion, "motion in AMASS's layout (.npz)");
     app.add_option("--poses", settings.poses, "number of poses")->check(CLI::PositiveNumber)->capture_default_str();
     app.add_option("--seed", settings.seed, "above 0: random frames of the motion, their joints turned by 0.12 rad")
         ->check(CLI::NonNegativeNumber)->capture_default_str();
     app.add_option("--methods", settings.methods, "of fem, lbs, dqs, gradient, projective, corotated; fem first for errors")
         ->delimiter(',')->check(CLI::IsMember({"fem", "lbs", "dqs", "gradient", "projective", "corotated"}));
-    app.add_option("--bones", settings.bones, "bones to embed (.obj), in place of the procedural ones");
-    app.add_option("--muscles", settings.muscles, "muscles to embed (.obj), in place of the procedural ones");
+    app.add_option("--bones", settings.files.bones, "bones to embed (.obj), in place of the procedural ones");
+    app.add_option("--muscles", settings.files.muscles, "muscles to embed (.obj), in place of the procedural ones");
     app.add_option("--threads", settings.threads, "threads; the results do not depend on them")->check(CLI::PositiveNumber);
     app.add_option("--out", settings.out, "folder for results")->capture_default_str();
     app.add_option("--json", settings.json, "file for figures (default: OUT/results.json)");

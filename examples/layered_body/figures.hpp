@@ -3,15 +3,13 @@
 /// How good each method is on each pose: the figures of Nolte et al. 2026, tables 1 and 3.
 #pragma once
 
-#include "scene.hpp"
+#include "../support/layered_scene.hpp"
 
 #include <softtissue/anatomy/posed_wrap.hpp>
 #include <softtissue/io/atomic_file.hpp>
-#include <softtissue/metric/gradient_error.hpp>
 #include <softtissue/metric/intersection.hpp>
-#include <softtissue/metric/position_error.hpp>
 #include <softtissue/metric/protrusion.hpp>
-#include <softtissue/metric/volume_change.hpp>
+#include <softtissue/ndg/evaluation.hpp>
 #include <softtissue/ndg/layered_animation.hpp>
 
 #include <nlohmann/json.hpp>
@@ -24,14 +22,17 @@
 
 namespace examples {
 
-/// Sums over poses; the table shows means.
 struct MethodFigures {
     std::string name;
-    int poses = 0, not_converged = 0, poses_with_intersection = 0, poses_with_protrusion = 0;
-    double position = 0.0, gradient = 0.0, inverted = 0.0, volume = 0.0, milliseconds = 0.0, iterations = 0.0;
-    double largest_position = 0.0, largest_protrusion = 0.0;  // [m]
+    MethodEvaluation<Scalar> evaluation = {};
+    int not_converged = 0, poses_with_intersection = 0, poses_with_protrusion = 0;
+    long iterations = 0;
+    double largest_protrusion = 0.0;  // [m]
 
-    double mean(double sum) const { return sum / std::max(1, poses); }
+    template <class T>
+    double mean(T PoseFigures<Scalar>::*figure) const {
+        return evaluation.summary(figure).mean;
+    }
 };
 
 struct Figures {
@@ -49,19 +50,13 @@ inline constexpr double start_tolerance = 1e-4;
 inline void add_pose(MethodFigures& figures, const Scene& scene, const RestOperators<Prism6, Scalar>& operators,
                      const PrescribedVertices& prescribed, const Matrix3X<Scalar>& x, const Matrix3X<Scalar>* reference,
                      const SolveReport<Scalar>& report, const Scene::Frame& frame, double milliseconds) {
-    ++figures.poses;
+    PoseFigures<Scalar> pose = reference != nullptr
+                                   ? measure_pose(scene.layered.mesh, operators, prescribed, x, *reference)
+                                   : measure_pose(scene.layered.mesh, x);
+    pose.milliseconds = milliseconds;
+    figures.evaluation.add(pose);
     figures.not_converged += report.succeeded() ? 0 : 1;
     figures.iterations += report.iterations;
-    figures.milliseconds += milliseconds;
-    if (reference != nullptr) {
-        const PositionError<Scalar> error = position_error(x, *reference, prescribed);
-        figures.position += error.mean;
-        figures.largest_position = std::max(figures.largest_position, error.largest);
-        figures.gradient += gradient_error(scene.layered.mesh, operators, x, *reference);
-    }
-    const VolumeChange<Scalar> change = volume_change(scene.layered.mesh, x);
-    figures.inverted += double(change.num_inverted);
-    figures.volume += change.mean_square;
     const Intersection crossing =
         compute_intersection(frame.skin, scene.body.faces, frame.muscles, scene.muscles.triangles);
     const Protrusion<Scalar> protrusion = compute_protrusion(frame.skin, scene.body.faces, frame.muscles);
@@ -73,16 +68,19 @@ inline void add_pose(MethodFigures& figures, const Scene& scene, const RestOpera
 inline void print_figures(const Figures& figures) {
     std::printf("\n%d poses; errors against fem\n", figures.poses);
     std::printf("               E_pos    E_grad    E_inv     E_vol   not con-      time  poses with muscle\n");
-    std::printf("                  mm      1e-3    cells      1e-3   verged          ms  crossing   outside, at most\n");
+    std::printf(
+        "                  mm      1e-3    cells      1e-3   verged          ms  crossing   outside, at most\n");
     for (const MethodFigures& m : figures.methods) {
         std::printf("%-11s", m.name.c_str());
         if (figures.has_reference) {
-            std::printf(" %8.3f  %8.3f", 1e3 * m.mean(m.position), 1e3 * m.mean(m.gradient));
+            std::printf(" %8.3f  %8.3f", 1e3 * m.mean(&PoseFigures<Scalar>::position),
+                        1e3 * m.mean(&PoseFigures<Scalar>::gradient));
         } else {
             std::printf(" %8s  %8s", "-", "-");
         }
-        std::printf(" %8.2f  %8.2f   %6d  %8.0f    %6d   %6d  %6.1f mm\n", m.mean(m.inverted), 1e3 * m.mean(m.volume),
-                    m.not_converged, m.mean(m.milliseconds), m.poses_with_intersection, m.poses_with_protrusion,
+        std::printf(" %8.2f  %8.2f   %6d  %8.0f    %6d   %6d  %6.1f mm\n", m.mean(&PoseFigures<Scalar>::inverted),
+                    1e3 * m.mean(&PoseFigures<Scalar>::volume), m.not_converged,
+                    m.mean(&PoseFigures<Scalar>::milliseconds), m.poses_with_intersection, m.poses_with_protrusion,
                     1e3 * m.largest_protrusion);
     }
     const auto most = [](const std::vector<Index>& counts) {
@@ -120,14 +118,19 @@ inline void write_figures(const std::filesystem::path& path, const Figures& figu
         {"interrupted", figures.interrupted}};
     for (const MethodFigures& m : figures.methods) {
         nlohmann::ordered_json& method = json["methods"][m.name];
-        method["E_pos_mm"] = figures.has_reference ? nlohmann::ordered_json(1e3 * m.mean(m.position)) : nullptr;
-        method["E_pos_max_mm"] = figures.has_reference ? nlohmann::ordered_json(1e3 * m.largest_position) : nullptr;
-        method["E_grad"] = figures.has_reference ? nlohmann::ordered_json(m.mean(m.gradient)) : nullptr;
-        method["E_inv"] = m.mean(m.inverted);
-        method["E_vol"] = m.mean(m.volume);
+        method["E_pos_mm"] =
+            figures.has_reference ? nlohmann::ordered_json(1e3 * m.mean(&PoseFigures<Scalar>::position)) : nullptr;
+        method["E_pos_max_mm"] =
+            figures.has_reference
+                ? nlohmann::ordered_json(1e3 * m.evaluation.summary(&PoseFigures<Scalar>::largest_position).worst)
+                : nullptr;
+        method["E_grad"] =
+            figures.has_reference ? nlohmann::ordered_json(m.mean(&PoseFigures<Scalar>::gradient)) : nullptr;
+        method["E_inv"] = m.mean(&PoseFigures<Scalar>::inverted);
+        method["E_vol"] = m.mean(&PoseFigures<Scalar>::volume);
         method["not_converged"] = m.not_converged;
-        method["iterations"] = m.mean(m.iterations);
-        method["milliseconds"] = m.mean(m.milliseconds);
+        method["iterations"] = double(m.iterations) / std::max(1.0, double(m.evaluation.num_poses()));
+        method["milliseconds"] = m.mean(&PoseFigures<Scalar>::milliseconds);
         method["poses_with_intersection"] = m.poses_with_intersection;
         method["poses_with_protrusion"] = m.poses_with_protrusion;
         method["protrusion_max_mm"] = 1e3 * m.largest_protrusion;

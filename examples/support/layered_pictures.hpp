@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Layered bodies side by side: local volume change on the skin (as Nolte et al. 2026, fig. 9), and what lies under it.
+#pragma once
+
+#include "layered_scene.hpp"
+
+#include <softtissue/core/notation.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace softtissue {
+class GltfAnimation;
+}
+
+namespace examples {
+
+/// One pose by one method; the label says which.
+struct Shot {
+    std::string label;
+    Scene::Frame frame;
+    Matrix3X<float> colors;  // of the skin, by volume change
+    double mean_change = 0.0;
+};
+
+/// The change of the columns under each skin vertex, root mean square of all cells in mean_change.
+Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scalar>& x, Scene::Frame frame);
+
+/// Above the skins coloured by volume change, below the same bodies transparent over bones and muscles.
+void write_comparison(const std::filesystem::path& path, const Scene& scene, const std::vector<Shot>& shots,
+                      const std::string& title);
+
+/// One row of bodies: the skins of all methods, bones and muscles of the first.
+class Animation {
+public:
+    Animation(const Scene& scene, const std::vector<std::string>& methods, double frame_rate);
+    ~Animation();
+
+    void add(size_t method, const Scene::Frame& frame);
+    void write(const std::filesystem::path& path);
+
+private:
+    std::unique_ptr<GltfAnimation> gltf_;
+    std::vector<Index> skins_;
+    Index bones_ = 0, muscles_ = 0;
+};
+
+}  // namespace examples
