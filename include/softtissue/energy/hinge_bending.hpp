@@ -12,7 +12,7 @@
 /// Filter      numeric, of the 9x9 Hessian without translations: the same as that of the 12x12 one
 /// Refuses     an edge without rest length, positions that do not fit the surface, a negative stiffness, what the measure refuses
 /// Source      Nolte et al. 2026, eq. (5); Grinspun et al. 2003; rigidity: Seung, Nelson 1988
-/// Cost        about 2 kflop a hinge for the Hessian, ten times that for a filtered one
+/// Cost        about 2 kflop a hinge for the Hessian, twice that for a filtered one
 /// Tests       tests/unit/energy/hinge_bending_test.cpp
 #pragma once
 
@@ -23,12 +23,14 @@
 #include <softtissue/energy/hinge_invariants.hpp>
 #include <softtissue/energy/placed_stencils.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
+#include <softtissue/linalg/psd_filter_batch.hpp>
 #include <softtissue/mesh/hinges.hpp>
 #include <softtissue/mesh/triangle_mesh.hpp>
 
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace softtissue {
@@ -38,11 +40,11 @@ namespace softtissue {
 template <class M>
 concept HingeMeasure = RealScalar<typename M::Scalar> && std::copy_constructible<M> &&
     requires(const M& measure, const HingeInvariants<typename M::Scalar>& hinge) {
-        M(hinge);
-        { measure.energy(hinge) } -> std::same_as<typename M::Scalar>;
-        { measure.gradient(hinge) } -> std::same_as<typename HingeInvariants<typename M::Scalar>::Values>;
-        { measure.hessian(hinge) } -> std::same_as<typename HingeInvariants<typename M::Scalar>::SquareMatrix>;
-    };
+    M(hinge);
+    { measure.energy(hinge) } -> std::same_as<typename M::Scalar>;
+    { measure.gradient(hinge) } -> std::same_as<typename HingeInvariants<typename M::Scalar>::Values>;
+    { measure.hessian(hinge) } -> std::same_as<typename HingeInvariants<typename M::Scalar>::SquareMatrix>;
+};
 
 template <HingeMeasure Measure>
 class HingeBending {
@@ -58,8 +60,8 @@ public:
         for (Index h = 0; h < num_hinges(); ++h) {
             const Matrix3<Scalar> edges = stencils_.rest_edges(h);
             const Scalar length = edges.col(0).norm();
-            require(length > Scalar(0), "hinge bending: edge (", hinges()(0, h), ", ", hinges()(1, h), ") has rest length ",
-                    length, " m, expected > 0");
+            require(length > Scalar(0), "hinge bending: edge (", hinges()(0, h), ", ", hinges()(1, h),
+                    ") has rest length ", length, " m, expected > 0");
             inverse_lengths_(h) = Scalar(1) / length;
             measures_.emplace_back(HingeInvariants<Scalar>(edges * inverse_lengths_(h)));
         }
@@ -74,7 +76,9 @@ public:
     void set_placement(const Placement<Scalar>& placement) { stencils_.set_placement(placement); }
 
     /// Dihedral angle in (-pi, pi]: 0 where flat, positive where convex seen from outside.
-    Scalar angle(const Matrix3X<Scalar>& d, Index hinge) const { return invariants(hinge, stencils_.edges(d, hinge)).angle(); }
+    Scalar angle(const Matrix3X<Scalar>& d, Index hinge) const {
+        return invariants(hinge, stencils_.edges(d, hinge)).angle();
+    }
 
     template <Executor E>
     Scalar energy(const Matrix3X<Scalar>& d, const E& executor) {
@@ -87,27 +91,37 @@ public:
     void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor) {
         stencils_.add_gradient(d, gradient, executor, [&](Index h, const Matrix3<Scalar>& edges) -> Matrix3<Scalar> {
             const HingeInvariants<Scalar> hinge = invariants(h, edges);
-            return stiffness_ * inverse_lengths_(h) * unvec<Scalar>(hinge.jacobian().transpose() * measure(h).gradient(hinge));
+            return stiffness_ * inverse_lengths_(h) *
+                   unvec<Scalar>(hinge.jacobian().transpose() * measure(h).gradient(hinge));
         });
     }
 
-    void add_neighbours(const PrescribedVertices& prescribed, std::vector<std::vector<std::int32_t>>& neighbours) const {
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
         stencils_.add_neighbours(prescribed, neighbours);
     }
 
-    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) { stencils_.bind(prescribed, pattern); }
+    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
+        stencils_.bind(prescribed, pattern);
+    }
 
     template <Executor E>
     void add_hessian(const Matrix3X<Scalar>& d, PsdFilter filter, BlockMatrix<Scalar>& hessian, const E& executor) {
-        stencils_.add_hessian(d, hessian, executor, [&](Index h, const Matrix3<Scalar>& edges) {
-            return hessian_by_edges(h, edges, filter);
-        });
+        stencils_.template add_hessian_in_batches<8>(hessian, executor,
+                                                     [&](Index first, std::span<Matrix9<Scalar>> hessians) {
+                                                         for (size_t k = 0; k < hessians.size(); ++k) {
+                                                             const Index h = first + Index(k);
+                                                             hessians[k] = hessian_by_edges(h, stencils_.edges(d, h));
+                                                         }
+                                                         filter_by_positions(hessians, filter);
+                                                     });
     }
 
 private:
     static Connectivity<4> stencils_of(const TriangleMesh& surface, const Matrix3X<Scalar>& rest_positions) {
-        require(rest_positions.cols() == surface.num_vertices(), "hinge bending: number of rest positions = ",
-                rest_positions.cols(), ", expected ", surface.num_vertices());
+        require(rest_positions.cols() == surface.num_vertices(),
+                "hinge bending: number of rest positions = ", rest_positions.cols(), ", expected ",
+                surface.num_vertices());
         return interior_hinges(surface);
     }
 
@@ -116,21 +130,28 @@ private:
         return HingeInvariants<Scalar>(edges * inverse_lengths_(h));
     }
 
-    Matrix9<Scalar> hessian_by_edges(Index h, const Matrix3<Scalar>& edges, PsdFilter filter) const {
+    Matrix9<Scalar> hessian_by_edges(Index h, const Matrix3<Scalar>& edges) const {
         const HingeInvariants<Scalar> hinge = invariants(h, edges);
         const Eigen::Matrix<Scalar, HingeInvariants<Scalar>::size, 9> J = hinge.jacobian();
         Matrix9<Scalar> H = hinge.contracted_hessian(measure(h).gradient(hinge));
         H.noalias() += J.transpose() * (measure(h).hessian(hinge) * J).eval();
         H *= stiffness_ * inverse_lengths_(h) * inverse_lengths_(h);
+        return H;
+    }
+
+    /// e = T x with T T^T = I + 1 1^T = (I + 1 1^T / 3)^2: e = (I + 1 1^T / 3) y with y = Q x and orthonormal rows of Q.
+    /// By y the eigenvalues are those of the Hessian by x.
+    static void filter_by_positions(std::span<Matrix9<Scalar>> hessians, PsdFilter filter) {
         if (filter == PsdFilter::none) {
-            return H;
+            return;
         }
-        // e = T x with T T^T = I + 1 1^T = (I + 1 1^T / 3)^2: e = (I + 1 1^T / 3) y with y = Q x and orthonormal rows of Q.
-        // By y the eigenvalues are those of the Hessian by x.
-        add_row_sums(H, Scalar(1) / Scalar(3));
-        Matrix9<Scalar> filtered_H = filtered(H, filter);
-        add_row_sums(filtered_H, Scalar(-1) / Scalar(6));
-        return filtered_H;
+        for (Matrix9<Scalar>& H : hessians) {
+            add_row_sums(H, Scalar(1) / Scalar(3));
+        }
+        filter_in_place<Scalar, 9>(hessians, filter);
+        for (Matrix9<Scalar>& H : hessians) {
+            add_row_sums(H, Scalar(-1) / Scalar(6));
+        }
     }
 
     /// H <- B H B on 3x3 blocks, B = I + factor 1 1^T.

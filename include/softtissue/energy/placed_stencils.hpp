@@ -20,7 +20,10 @@
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -82,7 +85,8 @@ public:
 
     /// `gradient_of(stencil, edges)` returns Edges.
     template <Executor E, class GradientOf>
-    void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor, const GradientOf& gradient_of) {
+    void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor,
+                      const GradientOf& gradient_of) {
         assembly_.add_gradient(
             executor,
             [&](Index s) {
@@ -97,17 +101,41 @@ public:
             gradient);
     }
 
-    void add_neighbours(const PrescribedVertices& prescribed, std::vector<std::vector<std::int32_t>>& neighbours) const {
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
         assembly_.add_neighbours(prescribed, neighbours);
     }
 
-    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) { assembly_.bind(prescribed, pattern); }
+    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
+        assembly_.bind(prescribed, pattern);
+    }
 
     /// `hessian_of(stencil, edges)` returns EdgeHessian, on column-major vec(edges).
     template <Executor E, class HessianOf>
-    void add_hessian(const Matrix3X<Scalar>& d, BlockMatrix<Scalar>& hessian, const E& executor, const HessianOf& hessian_of) {
+    void add_hessian(const Matrix3X<Scalar>& d, BlockMatrix<Scalar>& hessian, const E& executor,
+                     const HessianOf& hessian_of) {
         assembly_.add_hessian(
             executor, [&](Index s, auto blocks) { fill_blocks(s, hessian_of(s, edges(d, s)), blocks); }, hessian);
+    }
+
+    /// As add_hessian() for functions that work on several stencils at once: `fill(first, hessians)` fills the EdgeHessians of
+    /// the stencils first, first + 1, ...
+    template <int batch, Executor E, class Fill>
+    void add_hessian_in_batches(BlockMatrix<Scalar>& hessian, const E& executor, const Fill& fill) {
+        assembly_.add_hessian_by_ranges(
+            executor,
+            [&](Index begin, Index end, const auto& blocks_of) {
+                std::array<EdgeHessian, size_t(batch)> hessians;
+                for (Index first = begin; first < end; first += batch) {
+                    const size_t count = size_t(std::min(Index(batch), end - first));
+                    fill(first, std::span(hessians).first(count));
+                    for (size_t k = 0; k < count; ++k) {
+                        auto blocks = blocks_of(first + Index(k));
+                        fill_blocks(first + Index(k), hessians[k], blocks);
+                    }
+                }
+            },
+            hessian);
     }
 
 private:

@@ -30,7 +30,9 @@ public:
     using GradientSlot = Eigen::Matrix<Scalar, 3, num_nodes>;
 
     StencilAssembly(Connectivity<num_nodes> stencils, Index num_vertices)
-        : stencils_(std::move(stencils)), energy_slots_(stencils_.cols()), gradient_slots_(3, num_nodes * stencils_.cols()) {
+        : stencils_(std::move(stencils)),
+          energy_slots_(stencils_.cols()),
+          gradient_slots_(3, num_nodes * stencils_.cols()) {
         incidence_offsets_.assign(size_t(num_vertices) + 1, 0);
         for (Index s = 0; s < num_stencils(); ++s) {
             for (int a = 0; a < num_nodes; ++a) {
@@ -82,7 +84,8 @@ public:
     }
 
     /// Appends the free neighbours of every free vertex, for BlockPattern.
-    void add_neighbours(const PrescribedVertices& prescribed, std::vector<std::vector<std::int32_t>>& neighbours) const {
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
         for (Index s = 0; s < num_stencils(); ++s) {
             for (int b = 0; b < num_nodes; ++b) {
                 const std::int32_t column = prescribed.free_index(stencils_(b, s));
@@ -104,7 +107,8 @@ public:
                 const std::int32_t column = prescribed.free_index(stencils_(b, s));
                 for (int a = 0; a < num_nodes; ++a) {
                     const std::int32_t row = prescribed.free_index(stencils_(a, s));
-                    const bool is_free = column != PrescribedVertices::prescribed && row != PrescribedVertices::prescribed;
+                    const bool is_free =
+                        column != PrescribedVertices::prescribed && row != PrescribedVertices::prescribed;
                     ranks_(a, num_nodes * s + b) = is_free ? pattern.rank(column, row) : PrescribedVertices::prescribed;
                 }
             }
@@ -117,10 +121,24 @@ public:
     /// at pair_index(a, b)) and adds the results to `hessian`. Needs bind().
     template <Executor E, class HessianOf>
     void add_hessian(const E& executor, const HessianOf& hessian_of, BlockMatrix<Scalar>& hessian) {
+        add_hessian_by_ranges(
+            executor,
+            [&](Index begin, Index end, const auto& blocks_of) {
+                for (Index s = begin; s < end; ++s) {
+                    hessian_of(s, blocks_of(s));
+                }
+            },
+            hessian);
+    }
+
+    /// As add_hessian() for functions that work on many stencils at once: `fill(begin, end, blocks_of)` fills blocks_of(stencil)
+    /// of each stencil from begin to end.
+    template <Executor E, class Fill>
+    void add_hessian_by_ranges(const E& executor, const Fill& fill, BlockMatrix<Scalar>& hessian) {
         executor.for_each_range(num_stencils(), [&](Index begin, Index end) {
-            for (Index s = begin; s < end; ++s) {
-                hessian_of(s, hessian_slots_.template middleCols<3 * num_block_pairs>(3 * num_block_pairs * s));
-            }
+            fill(begin, end, [&](Index s) {
+                return hessian_slots_.template middleCols<3 * num_block_pairs>(3 * num_block_pairs * s);
+            });
         });
         executor.for_each_range(Index(free_vertices_.size()), [&](Index begin, Index end) {
             for (Index j = begin; j < end; ++j) {
