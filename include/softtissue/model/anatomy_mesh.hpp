@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -32,9 +33,10 @@ struct AnatomyMesh {
     Triangles triangles;
 };
 
-/// Appends point(u, angle) on `rings` rings of `sectors` points and the two poles; u is denser towards the poles.
-template <class Point>
-void add_loft(AnatomyMesh<double>& mesh, Index rings, Index sectors, const Point& point) {
+/// Appends point(u, angle) on `rings` rings of `sectors` points and the two poles; u is denser towards the poles. A body
+/// has many lofts, each made once: a function object, so that this is compiled once.
+inline void add_loft(AnatomyMesh<double>& mesh, Index rings, Index sectors,
+                     const std::function<Vector3<double>(double, double)>& point) {
     const double pi = std::numbers::pi;
     Matrix3X<double> positions(3, rings * sectors + 2);
     for (Index r = 0; r < rings; ++r) {

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -46,9 +47,10 @@ protected:
     Index sectors(double drawn) const { return 2 * ((count(drawn) + 1) / 2); }
 
     /// A tube through centres with half widths along `across` and its normal; `inside` is a point within the wrap.
-    template <class Centre, class Widths>
-    void tube(const Centre& centre, const Widths& widths, const Vector3<double>& across, const Vector3<double>& front,
-              const Vector3<double>& inside, double rings, double drawn_sectors, double roundness) {
+    void tube(const std::function<Vector3<double>(double)>& centre,
+              const std::function<Eigen::Vector2d(double)>& widths, const Vector3<double>& across,
+              const Vector3<double>& front, const Vector3<double>& inside, double rings, double drawn_sectors,
+              double roundness) {
         add_loft(meshes_.back(), count(rings), sectors(drawn_sectors), [&](double u, double angle) {
             const Eigen::Vector2d w = rounded_ends(u, roundness) * mm_ * widths(u);
             const Vector3<double> c = body_.within_bone(inside, centre(u), 0.4 * w.minCoeff() + mm_);
@@ -103,8 +105,7 @@ protected:
     };
 
     /// A shell that follows the chest's ellipse.
-    template <class Row>
-    void plate(const Row& row, double rings, double drawn_sectors) {
+    void plate(const std::function<PlateRow(double)>& row, double rings, double drawn_sectors) {
         add_loft(meshes_.back(), count(rings), sectors(drawn_sectors), [&](double u, double angle) {
             const PlateRow r = row(u);
             const double size = rounded_ends(u, 0.08);

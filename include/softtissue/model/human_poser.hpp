@@ -11,6 +11,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/model/human_solid.hpp>
 #include <softtissue/skinning/pose.hpp>
 
@@ -136,7 +137,12 @@ private:
         const double bend = std::atan2(q, p) + std::acos(std::clamp(wanted / std::hypot(p, q), -1.0, 1.0));
         const Matrix3<double> knee_turn = about_x(bend);
         const Vector3<double> straight = a + knee_turn * b;
-        const Matrix3<double> hip_turn = Eigen::Quaterniond::FromTwoVectors(straight, target).toRotationMatrix();
+        Quaternion<double> turn;  // the smallest one; towards the opposite each is as small
+        turn << straight.norm() * target.norm() + straight.dot(target), straight.cross(target);
+        if (turn.norm() < 1e-12 * straight.squaredNorm()) {
+            turn << 0.0, straight.unitOrthogonal();
+        }
+        const Matrix3<double> hip_turn = rotation_matrix_from_quaternion<double>(turn.normalized());
         const HumanStance::Foot& foot_target = stance.feet[size_t(side)];
         const Matrix3<double> above = turned(stance.pelvis) * hip_turn * knee_turn;
         pose.rotation_vectors.col(hip + side) = rotation_vector(hip_turn);
