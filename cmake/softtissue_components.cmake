@@ -3,6 +3,7 @@
 #
 #   io        softtissue::io        npz and glTF files, with JSON for reports
 #   cholmod   softtissue::cholmod   SuiteSparse's sparse Cholesky factorisation
+#   mpi       softtissue::mpi       work shared between processes, on one machine or several
 
 # Per library: name, header, where to look for it, library to link (or -), Debian package.
 set(softtissue_io_LIBRARIES
@@ -11,6 +12,8 @@ set(softtissue_io_LIBRARIES
     "nlohmann_json|nlohmann/json.hpp||-|nlohmann-json3-dev")
 set(softtissue_cholmod_LIBRARIES
     "cholmod|cholmod.h|suitesparse|cholmod|libsuitesparse-dev")
+set(softtissue_mpi_LIBRARIES
+    "mpi|mpi.h|mpi|mpi|libopenmpi-dev")
 
 # Makes softtissue::<component> if all its libraries are found. Sets softtissue_<component>_FOUND and
 # softtissue_<component>_MISSING, the Debian packages that hold what was not found. Plain searches, because the

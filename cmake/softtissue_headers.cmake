@@ -18,28 +18,25 @@ function(softtissue_included_headers result file)
     set(${result} "${lines}" PARENT_SCOPE)
 endfunction()
 
-# Splits a list of headers into those that need Eigen and the standard library only and those that need more, by
-# themselves or through what they include. A header that needs more says so with a line `#if !__has_include(<...>)`;
-# one that starts threads needs a thread library.
-function(softtissue_split_headers list_name core_result optional_result root)
-    set(optional "")
+# Those of a list of headers with a line that matches `regex`, in themselves or in what they include.
+function(softtissue_headers_with list_name regex result root)
+    set(found "")
     foreach(header IN LISTS ${list_name})
-        file(STRINGS "${root}/${header}" needs
-             REGEX "^[ \t]*#[ \t]*(if[ \t]+!__has_include|include[ \t]*<thread>)")
+        file(STRINGS "${root}/${header}" lines REGEX "${regex}" LIMIT_COUNT 1)
         softtissue_included_headers(includes_of_${header} "${root}/${header}")
-        if(needs)
-            list(APPEND optional ${header})
+        if(lines)
+            list(APPEND found ${header})
         endif()
     endforeach()
-    # Inheritance of the need: repeat until nothing changes.
+    # Inheritance: repeat until nothing changes.
     set(changed TRUE)
     while(changed)
         set(changed FALSE)
         foreach(header IN LISTS ${list_name})
-            if(NOT header IN_LIST optional)
+            if(NOT header IN_LIST found)
                 foreach(included IN LISTS includes_of_${header})
-                    if(included IN_LIST optional)
-                        list(APPEND optional ${header})
+                    if(included IN_LIST found)
+                        list(APPEND found ${header})
                         set(changed TRUE)
                         break()
                     endif()
@@ -47,11 +44,17 @@ function(softtissue_split_headers list_name core_result optional_result root)
             endif()
         endforeach()
     endwhile()
+    list(SORT found)
+    set(${result} "${found}" PARENT_SCOPE)
+endfunction()
+
+# Splits a list of headers into those that need Eigen and the standard library only and those that need more, by
+# themselves or through what they include. A header that needs more says so with a line `#if !__has_include(<...>)`;
+# one that starts threads needs a thread library.
+function(softtissue_split_headers list_name core_result optional_result root)
+    softtissue_headers_with(${list_name} "^[ \t]*#[ \t]*(if[ \t]+!__has_include|include[ \t]*<thread>)" optional "${root}")
     set(core ${${list_name}})
-    if(optional)
-        list(REMOVE_ITEM core ${optional})
-        list(SORT optional)
-    endif()
+    list(REMOVE_ITEM core ${optional} "")
     set(${core_result} "${core}" PARENT_SCOPE)
     set(${optional_result} "${optional}" PARENT_SCOPE)
 endfunction()
