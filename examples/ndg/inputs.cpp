@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "inputs.hpp"
+
+#include <softtissue/io/amass_file.hpp>
+#include <softtissue/io/smpl_file.hpp>
+#include <softtissue/model/procedural_human.hpp>
+#include <softtissue/model/procedural_motion.hpp>
+
+#include <filesystem>
+
+namespace examples {
+
+using namespace softtissue;
+
+SmplBody<double> read_body(const std::string& path) {
+    return path.empty() ? procedural_human<double>() : read_smpl_body<double>(path);
+}
+
+std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const std::vector<std::string>& held_out,
+                                    Index num_joints) {
+    std::vector<DatasetClip> clips;
+    for (const auto* list : {&paths, &held_out}) {
+        for (const std::string& path : *list) {
+            clips.push_back({std::filesystem::path(path).stem().string(), read_amass_motion<double>(path, num_joints),
+                             list == &held_out});
+        }
+    }
+    if (clips.empty()) {
+        clips.push_back({"procedural", procedural_motion<double>()});
+    }
+    return clips;
+}
+
+}  // namespace examples

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Bodies and motions that the subcommands start from.
+#pragma once
+
+#include <softtissue/ndg/dataset_plan.hpp>
+#include <softtissue/skinning/smpl_body.hpp>
+
+#include <string>
+#include <vector>
+
+namespace examples {
+
+/// The body in a file of SMPL's layout; the embedded one if the path is empty.
+softtissue::SmplBody<double> read_body(const std::string& path);
+
+/// The motions in files of AMASS's layout, the second ones held out; the embedded one if there are none.
+std::vector<softtissue::DatasetClip> read_clips(const std::vector<std::string>& paths,
+                                                const std::vector<std::string>& held_out, softtissue::Index num_joints);
+
+}  // namespace examples
