@@ -7,7 +7,7 @@ namespace examples {
 
 using namespace softtissue;
 
-GenerationProgress compute_samples(const DatasetFolder& folder, const ShapedBodyMaker<double>& maker,
+GenerationProgress compute_samples(const DatasetFolder& folder, const BodyFunction& maker,
                                    const GenerationOptions& options,
                                    const std::function<bool(const GenerationProgress&)>& observer) {
     return generate_dataset<DirectCholesky>(folder, maker, options, observer);

@@ -124,13 +124,13 @@ void generate(const Settings& settings) {
     const MpiShard mpi;
     const Shard shard = settings.shard.empty() ? mpi.shard() : parse_shard(settings.shard);
     watch_interrupt();
-    SmplBody<double> body = read_body(settings.body);
+    const SmplBody<double> body = read_body(settings.body);
     const std::vector<DatasetClip> clips = read_clips(settings.motions, settings.test_motions, body.num_joints());
     const Index shapes = std::min(settings.shapes, body.num_shapes());
     GenerationOptions options{.threads = settings.threads, .shard = shard.index, .num_shards = shard.count};
     const nlohmann::ordered_json wanted = definition(body, clips, shapes, settings.data, options.samples);
     const SkeletalLayers<double> skeleton{{}, body.tree, body.joint_names};
-    const ShapedBodyMaker<double> maker(std::move(body));
+    const BodyFunction maker = layered_bodies(body);
     if (!DatasetFolder::has_plan(settings.out)) {
         SkeletalLayers<double> mean = skeleton;
         mean.body = maker(VectorX<double>::Zero(shapes));

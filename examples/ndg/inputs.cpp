@@ -16,6 +16,10 @@ SmplBody<double> read_body(const std::string& path) {
     return path.empty() ? procedural_human<double>() : read_smpl_body<double>(path);
 }
 
+BodyFunction layered_bodies(const SmplBody<double>& body) {
+    return ShapedBodyMaker<double>(body);
+}
+
 std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const std::vector<std::string>& held_out,
                                     Index num_joints) {
     std::vector<DatasetClip> clips;

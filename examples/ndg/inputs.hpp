@@ -4,8 +4,10 @@
 #pragma once
 
 #include <softtissue/ndg/dataset_plan.hpp>
+#include <softtissue/ndg/shaped_body.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,12 @@ namespace examples {
 
 /// The body in a file of SMPL's layout; the embedded one if the path is empty.
 softtissue::SmplBody<double> read_body(const std::string& path);
+
+/// From shape coefficients to layered bodies.
+using BodyFunction = std::function<softtissue::ShapedBody<double>(const softtissue::VectorX<double>&)>;
+
+/// Those of a body.
+BodyFunction layered_bodies(const softtissue::SmplBody<double>& body);
 
 /// The motions in files of AMASS's layout, the second ones held out; the embedded one if there are none.
 std::vector<softtissue::DatasetClip> read_clips(const std::vector<std::string>& paths,

@@ -50,7 +50,9 @@ public:
     /// Opens a data set.
     explicit DatasetFolder(std::filesystem::path path) : path_(std::move(path)) {
         require(has_plan(path_), path_.string(), ": no data set, expected a folder with a plan.json");
-        definition_ = read_definition(path_ / "plan.json");
+        definition_ = read_json(path_ / "plan.json");
+        require(definition_.value("format", nlohmann::ordered_json()) == format, (path_ / "plan.json").string(),
+                ": format is ", definition_.value("format", nlohmann::ordered_json()).dump(), ", expected ", format);
         plan_ = read_dataset_plan(path_ / "plan.npz");
         mean_ = read_layered_body<double>(path_ / "body.npz");
     }
@@ -105,6 +107,8 @@ public:
     }
 
     DatasetSample sample(Index index) const {
+        require(index >= 0 && index < plan_.num_samples(), path_.string(), ": sample ", index, ", expected 0 to ",
+                plan_.num_samples() - 1);
         DatasetSample result = read_sample(sample_path(index));
         const PlannedSample& planned = plan_.samples[size_t(index)];
         require(result.sample == index && result.body == planned.body && result.pose_index == planned.pose,
@@ -135,12 +139,12 @@ public:
 
     /// Why a sample failed.
     std::string failure(Index sample) const {
-        const nlohmann::ordered_json file = read_definition(failure_path(sample));
+        const nlohmann::ordered_json file = read_json(failure_path(sample));
         return file.value("reason", std::string("unknown"));
     }
 
 private:
-    static nlohmann::ordered_json read_definition(const std::filesystem::path& path) {
+    static nlohmann::ordered_json read_json(const std::filesystem::path& path) {
         std::ifstream stream(path, std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
         nlohmann::ordered_json json = nlohmann::ordered_json::parse(text, nullptr, false);

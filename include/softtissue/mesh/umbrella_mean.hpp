@@ -34,15 +34,17 @@ template <RealScalar S, int rows>
 Eigen::Matrix<S, rows, Eigen::Dynamic> umbrella_smoothed(const TriangleMesh& mesh,
                                                          Eigen::Matrix<S, rows, Eigen::Dynamic> values, int rounds,
                                                          const std::vector<bool>& held = {}) {
-    Eigen::Matrix<S, rows, Eigen::Dynamic> previous;
+    Eigen::Matrix<S, rows, Eigen::Dynamic> next(values.rows(), values.cols());
     for (int round = 0; round < rounds; ++round) {
-        previous = values;
         for (Index v = 0; v < values.cols(); ++v) {
             const bool is_held = !held.empty() && held[size_t(v)];
-            if (!is_held && !mesh.neighbours(v).empty()) {
-                values.col(v) = umbrella_mean<S, rows>(mesh, previous, v);
+            if (is_held || mesh.neighbours(v).empty()) {
+                next.col(v) = values.col(v);
+            } else {
+                next.col(v) = umbrella_mean<S, rows>(mesh, values, v);
             }
         }
+        values.swap(next);
     }
     return values;
 }
