@@ -49,6 +49,24 @@ struct PrincipalComponents {
         return (components.transpose() * (x - mean)).cwiseQuotient(standard_deviations);
     }
 
+    /// The coefficients of many columns.
+    template <Executor E = SequentialExecutor>
+    MatrixX<S> encode_columns(const MatrixX<S>& x, const E& executor = {}) const {
+        require(x.rows() == mean.size(), "principal components: columns of ", x.rows(), " numbers, expected ",
+                mean.size());
+        constexpr Index tile = 64;
+        MatrixX<S> coefficients(num_components(), x.cols());
+        executor.for_each_range((x.cols() + tile - 1) / tile, [&](Index begin, Index end) {
+            for (Index first = begin * tile; first < std::min(end * tile, x.cols()); first += tile) {
+                const Index count = std::min(tile, x.cols() - first);
+                const MatrixX<S> centred = x.middleCols(first, count).colwise() - mean;
+                coefficients.middleCols(first, count).noalias() = components.transpose() * centred;
+                coefficients.middleCols(first, count).array().colwise() /= standard_deviations.array();
+            }
+        });
+        return coefficients;
+    }
+
     VectorX<S> decode(ConstRef<VectorX<S>> coefficients) const {
         require(coefficients.size() == num_components(), "principal components: ", coefficients.size(),
                 " coefficients, expected ", num_components());

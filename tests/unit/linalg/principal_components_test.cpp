@@ -85,6 +85,12 @@ TEST_CASE_TEMPLATE("threads change no bit", S, float, double) {
     CHECK(one.mean == three.mean);
     CHECK(one.components == three.components);
     CHECK(one.standard_deviations == three.standard_deviations);
+    const MatrixX<S> coefficients = one.encode_columns(samples);
+    CHECK(one.encode_columns(samples, threads) == coefficients);
+    for (const Index k : {0, 63, 64, 149}) {
+        CHECK((coefficients.col(k) - one.encode(samples.col(k))).cwiseAbs().maxCoeff() <
+              S(1e4) * std::numeric_limits<S>::epsilon());
+    }
 }
 
 TEST_CASE("what has no components is refused") {
