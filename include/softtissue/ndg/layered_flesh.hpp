@@ -8,13 +8,14 @@
 ///             psi = mu/2 (|F|^2 - 3) + lambda/2 (det F - alpha)^2 with Lamé's textbook (mu, lambda) of the layer's (E, nu)
 /// Units       x m, E J, moduli Pa, k_s and k_b J
 /// Method      Newton, see solver/newton.hpp: filtered Hessians while steps are long, then the exact one wherever it is positive
-///             definite, in which the skin's negative curvature is left out. Stops by the decrement of an exact step: positions of soft wrinkles wander long after the energy stands.
+///             definite, in which the skin's negative curvature is left out; between them, steps by the last Hessian and what was
+///             learned since, which follow soft wrinkles faster than more Hessians do. Stops by the decrement of an exact step: positions of soft wrinkles wander long after the energy stands.
 /// Valid       any start, inverted prisms included: the energy has no barrier. Extreme poses have several equilibria; which one
 ///             is found depends on the start (see LayeredAnimation::start_dependence).
 /// Source      Nolte et al. 2026, eq. (2) to (7); Smith et al. 2018; Grinspun et al. 2003
 /// Departs     bending by the smooth DihedralChord by default, DihedralDifference is the source's; Hessian as above (a Hessian
 ///             that is filtered to the end does not converge: at equilibrium two thirds of the prisms are indefinite)
-/// Cost        an assembly and one or two factorisations of 3 x free vertices per iteration, about ten iterations a pose
+/// Cost        an assembly and a factorisation of 3 x free vertices per iteration, about six iterations a pose
 /// Tests       tests/unit/ndg/layered_flesh_test.cpp, tests/scenario/layered_animation_test.cpp
 #pragma once
 
@@ -75,7 +76,8 @@ NewtonOptions<S> quasi_static_options() {
             .decrement_tolerance = S(1e-4),
             .filter = PsdFilter::clamp,
             .far_step = S(4e-3),
-            .filtered_after_failure = 2};
+            .filtered_after_failure = 2,
+            .quasi_newton_steps = 20};
 }
 
 template <RealScalar S, Executor ExecutorType, SparseCholesky<S> Cholesky = DefaultCholesky<S>,

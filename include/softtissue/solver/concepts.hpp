@@ -28,4 +28,11 @@ concept NewtonLinearSolver =
         { solver.solve(H, rhs, relative_tolerance, p, executor) } -> std::same_as<LinearSolveResult>;
     };
 
+/// solve_again(rhs, p): the system of the last solve() with another right-hand side, for a fraction of its cost.
+template <class T>
+concept FactorKeepingSolver =
+    NewtonLinearSolver<T> && requires(T& solver, const VectorX<typename T::Scalar>& rhs, VectorX<typename T::Scalar>& p) {
+        solver.solve_again(rhs, p);
+    };
+
 }  // namespace softtissue

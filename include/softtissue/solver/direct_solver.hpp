@@ -33,6 +33,9 @@ public:
         return {.is_positive_definite = true, .iterations = 0};
     }
 
+    /// With the last Hessian, provided that it was positive definite.
+    void solve_again(const VectorX<Scalar>& rhs, VectorX<Scalar>& p) { p = cholesky_.solve(rhs); }
+
     /// False if H is not positive definite.
     bool factorize(const BlockMatrix<Scalar>& H) {
         if (!is_analyzed_ || !(analyzed_ == H.pattern())) {

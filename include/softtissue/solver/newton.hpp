@@ -7,6 +7,8 @@
 ///             minimum the trial is wasted: after a step longer than far_step, and filtered_after_failure times after an
 ///             indefinite Hessian, it is left out. Halving line search on the energy (Armijo), full step first. Never
 ///             increases the energy beyond its round-off.
+///             Between two iterations up to quasi_newton_steps steps reuse the last Hessian, corrected by what recent steps told
+///             about the curvature (limited_memory_bfgs.hpp), while each gains a twentieth of the iteration's decrease.
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
 ///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
 ///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
@@ -20,6 +22,7 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/limited_memory_bfgs.hpp>
 #include <softtissue/solver/report.hpp>
 
 #include <algorithm>
@@ -45,6 +48,7 @@ struct NewtonOptions {
     S far_step = std::numeric_limits<S>::infinity();  ///< [m]; infinity: the exact Hessian is always tried
     int filtered_after_failure = 0;
     int max_halvings = 40;
+    int quasi_newton_steps = 0;  ///< after each iteration, where the linear solver keeps its factor
 };
 
 /// What an observer sees before each iteration; it returns false to cancel.
@@ -96,6 +100,7 @@ public:
                 return ended(SolveStatus::linear_solver_failed);
             }
             const Scalar last_residual = report_.residual;
+            const Scalar last_energy = report_.energy;
             const Scalar step = direction_.cwiseAbs().maxCoeff();
             report_.decrement = -gradient_.dot(direction_) / Scalar(2);
             const StepOutcome outcome = take_step();
@@ -103,6 +108,7 @@ public:
                 return ended(SolveStatus::line_search_stalled);
             }
             refresh_gradient();
+            remember_step();
             const bool is_small = step <= options_.step_tolerance || report_.decrement <= options_.decrement_tolerance;
             if (is_small && hessian_ == HessianKind::exact) {
                 return ended(SolveStatus::converged);
@@ -114,6 +120,9 @@ public:
                 return ended(SolveStatus::precision_limit);
             }
             plan_next(is_small);
+            if constexpr (FactorKeepingSolver<LinearSolver>) {
+                take_quasi_newton_steps(Scalar(0.05) * (last_energy - report_.energy));
+            }
         }
     }
 
@@ -133,6 +142,7 @@ private:
     }
 
     void refresh_gradient() {
+        last_gradient_.swap(gradient_);
         gradient_ = objective_.gradient(d_);
         // maxCoeff skips NaN on some paths; the sum does not
         report_.residual = std::isfinite(gradient_.sum()) && gradient_.size() > 0
@@ -178,6 +188,36 @@ private:
         return result.is_positive_definite && std::isfinite(direction_.sum()) && gradient_.dot(direction_) <= Scalar(0);
     }
 
+    void remember_step() {
+        if (options_.quasi_newton_steps > 0) {
+            direction_ *= length_;
+            last_gradient_ = gradient_ - last_gradient_;
+            memory_.remember(direction_, last_gradient_);
+        }
+    }
+
+    /// Ends early where a step gains less than asked, and with the exact Hessian next where the decrement's tolerance is met.
+    void take_quasi_newton_steps(Scalar least_decrease) {
+        const auto solve_again = [&](const VectorX<Scalar>& rhs, VectorX<Scalar>& p) { linear_solver_.solve_again(rhs, p); };
+        Scalar decrease = least_decrease;
+        for (int k = 0; k < options_.quasi_newton_steps && decrease >= least_decrease; ++k) {
+            memory_.direction_into(gradient_, solve_again, direction_);
+            const Scalar promised = -gradient_.dot(direction_) / Scalar(2);
+            if (promised <= options_.decrement_tolerance) {
+                filtered_ahead_ = 0;
+                return;
+            }
+            decrease = report_.energy;
+            if (take_step() != StepOutcome::decreased) {
+                return;
+            }
+            decrease -= report_.energy;
+            ++report_.quasi_newton_steps;
+            refresh_gradient();
+            remember_step();
+        }
+    }
+
     /// The energy is a sum over many cells: differences below this are noise.
     Scalar energy_resolution() const {
         return Scalar(32) * std::numeric_limits<Scalar>::epsilon() * std::abs(report_.energy);
@@ -196,6 +236,7 @@ private:
                 d_.swap(trial_);
                 predicted_ratio_ = (energy - report_.energy) / (slope * (length - length * length / Scalar(2)));
                 report_.energy = energy;
+                length_ = length;
                 report_.step = length * direction_.cwiseAbs().maxCoeff();
                 return is_resolved ? StepOutcome::decreased : StepOutcome::below_resolution;
             }
@@ -213,8 +254,10 @@ private:
     HessianKind hessian_ = HessianKind::exact;
     int filtered_ahead_ = std::isfinite(options_.far_step) ? 1 : 0;
     Scalar predicted_ratio_ = Scalar(0);  // actual over predicted decrease of the last step
-    VectorX<Scalar> gradient_, direction_;
+    Scalar length_ = Scalar(0);  // of the last step, in directions
+    VectorX<Scalar> gradient_, last_gradient_, direction_;
     Matrix3X<Scalar> trial_;
+    LimitedMemoryBfgs<Scalar> memory_;
 };
 
 }  // namespace detail

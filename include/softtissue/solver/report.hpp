@@ -43,6 +43,7 @@ struct [[nodiscard]] SolveReport {
     int iterations = 0;           ///< Newton iterations: linear systems solved and steps taken
     int filtered_iterations = 0;  ///< of these, with a filtered Hessian
     int indefinite_hessians = 0;  ///< exact Hessians that were tried and not positive definite
+    int quasi_newton_steps = 0;   ///< steps between the iterations, with a Hessian of before
     int energy_evaluations = 0;
     int linear_iterations = 0;    ///< conjugate-gradient iterations; 0 for direct solvers
     S energy = S(0);

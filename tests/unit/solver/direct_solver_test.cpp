@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/solver/direct_solver.hpp>
 
+#include <softtissue/solver/frozen_factor_cg.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include <doctest/doctest.h>
 
 using namespace softtissue;
+
+static_assert(FactorKeepingSolver<DirectSolver<float>>);
+static_assert(!FactorKeepingSolver<FrozenFactorCg<double>>);
 
 namespace {
 
@@ -45,6 +49,9 @@ TEST_CASE_TEMPLATE("a positive definite system is solved", Scalar, float, double
     // the factor stays reachable
     const VectorX<Scalar> again = solver.factor().solve(H.matrix() * expected);
     CHECK(again == p);
+    VectorX<Scalar> twice;
+    solver.solve_again(H.matrix() * (Scalar(2) * expected), twice);
+    CHECK((twice - Scalar(2) * p).norm() < 64 * std::numeric_limits<Scalar>::epsilon() * expected.norm());
 }
 
 TEST_CASE_TEMPLATE("an indefinite matrix is reported, and does not spoil the next one", Scalar, float, double) {

@@ -209,6 +209,22 @@ TEST_CASE("far steps are filtered without a trial, near ones are exact") {
     CHECK(patient.report.status == SolveStatus::converged);
 }
 
+TEST_CASE("steps between the iterations save Hessians and never raise the energy") {
+    const Solve<double, LongTailed<double>> plain({}, 0.4);
+    const Solve<double, LongTailed<double>> solve({}, 0.4, {.quasi_newton_steps = 5});
+    CHECK(plain.report.quasi_newton_steps == 0);
+    CHECK(solve.report.status == SolveStatus::converged);
+    CHECK(solve.report.quasi_newton_steps > 0);
+    CHECK(solve.report.iterations < plain.report.iterations);
+    CHECK(std::abs(solve.d(0, 1)) < 1e-9);
+    check_monotone(solve.energies, solve.report.energy);
+    // it is still an exact step that ends the solve
+    const Solve<double, Exponential<double>> decrement({}, 2.0, {.step_tolerance = 0, .decrement_tolerance = 1e-6, .quasi_newton_steps = 5});
+    CHECK(decrement.report.status == SolveStatus::converged);
+    CHECK(decrement.report.decrement <= 1e-6);
+    CHECK(decrement.energies.back() - decrement.report.energy == doctest::Approx(decrement.report.decrement).epsilon(0.01));
+}
+
 TEST_CASE("the adaptive filter clamps where the model predicts well") {
     // where f'' < 0 clamping leaves no curvature at all: only the absolute filter can step
     Solve<double, DoubleWell<double>> badly_predicted({}, 0.3, {.adapts_filter = true});
