@@ -60,8 +60,8 @@ struct ReferenceCase {
 /// max |a - b| over max |b|, or over `scale` if that is given.
 template <class A, class B>
 double relative_difference(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b, double scale = 0.0) {
-    const double reference = scale > 0.0 ? scale : b.cwiseAbs().maxCoeff();
-    return (a - b).cwiseAbs().maxCoeff() / (reference > 0.0 ? reference : 1.0);
+    const double reference = scale > 0.0 ? scale : double(b.cwiseAbs().maxCoeff());
+    return double((a - b).cwiseAbs().maxCoeff()) / (reference > 0.0 ? reference : 1.0);
 }
 
 /// The longest edge of the bounding box of `points`.
@@ -75,6 +75,9 @@ void check_prism(const ReferenceCase& reference, Checklist& checks);
 void check_static_tets(const ReferenceCase& reference, Checklist& checks);
 void check_static_prisms(const ReferenceCase& reference, Checklist& checks);
 void check_dynamics(const ReferenceCase& reference, Checklist& checks);
+void check_matrix_exponential(const ReferenceCase& reference, Checklist& checks);
+void check_mlp(const ReferenceCase& reference, Checklist& checks);
+void check_training(const ReferenceCase& reference, Checklist& checks);
 void check_triangle_geometry(const ReferenceCase& reference, Checklist& checks);
 void check_tet_geometry(const ReferenceCase& reference, Checklist& checks);
 void check_winding_number(const ReferenceCase& reference, Checklist& checks);
