@@ -4,6 +4,11 @@
 ///
 /// What        poses (T, 3 J), trans (T, 3), mocap_framerate (or mocap_frame_rate), optional gender and betas (k);
 ///             other arrays are ignored.
+/// Hands       files for SMPL-H (52 joints, 156 columns) and SMPL-X (55 joints, 165 columns) begin with SMPL's 22 body joints.
+///             For a body of 24 joints, AmassHands::at_rest takes those and leaves the body's two hand joints at rest;
+///             AmassClip::file_joints tells that it happened. By default such files are refused.
+/// Betas       in order of decreasing variance: shape_coefficients() takes the first ones that a body has, zero beyond the
+///             last one stated. That is exact within one shape space and a likeness between different ones.
 /// Units       axis times angle [rad], root joint first; translation [m], added after posing; frame rate [1/s].
 /// Refuses     missing arrays, a motion for another number of joints, a translation track of another length, values that
 ///             are not finite, a frame rate that is not positive (InvalidInput names the file).
@@ -17,37 +22,60 @@
 #include <softtissue/io/npz.hpp>
 #include <softtissue/skinning/motion.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace softtissue {
 
+/// What becomes of a file with finger joints on a body without them.
+enum class AmassHands { refuse, at_rest };
+
 /// A motion with the body it was captured from.
 template <RealScalar S>
 struct AmassClip {
     Motion<S> motion;
-    std::string gender;  ///< empty if not stated
-    VectorX<S> betas;    ///< shape coefficients, empty if not stated
+    std::string gender;     ///< empty if not stated
+    VectorX<S> betas;       ///< shape coefficients, empty if not stated
+    Index file_joints = 0;  ///< joints of the file, which may be more than those of the motion
 };
 
-/// The clip in `path`, which must move a skeleton of `num_joints` joints.
+/// `betas` for a body of `num_shapes` shapes: its leading coefficients, or zeros after its last one.
 template <RealScalar S>
-AmassClip<S> read_amass_clip(const std::filesystem::path& path, Index num_joints) {
+VectorX<S> shape_coefficients(const VectorX<S>& betas, Index num_shapes) {
+    VectorX<S> result = VectorX<S>::Zero(num_shapes);
+    const Index shared = std::min(num_shapes, betas.size());
+    result.head(shared) = betas.head(shared);
+    return result;
+}
+
+/// The clip in `path` for a skeleton of `num_joints` joints.
+template <RealScalar S>
+AmassClip<S> read_amass_clip(const std::filesystem::path& path, Index num_joints,
+                             AmassHands hands = AmassHands::refuse) {
+    constexpr Index smpl_joints = 24, body_joints = 22, smplh_joints = 52, smplx_joints = 55;
     const NpzFile file = read_npz(path);
     const NpyArray& poses = file.at("poses");
     poses.require_shape({NpyArray::any, NpyArray::any});
     const Index frames = poses.shape()[0];
     const Index columns = poses.shape()[1];
-    require(columns == 3 * num_joints, poses.source(), ": has ", columns, " columns, expected ", 3 * num_joints,
-            " for ", num_joints, " joints (a motion for another skeleton)");
+    const bool has_fingers = num_joints == smpl_joints && (columns == 3 * smplh_joints || columns == 3 * smplx_joints);
+    require(columns == 3 * num_joints || (has_fingers && hands == AmassHands::at_rest), poses.source(), ": has ",
+            columns, " columns, expected ", 3 * num_joints, " for ", num_joints,
+            " joints (a motion for another skeleton",
+            has_fingers ? ": AmassHands::at_rest takes its body without the fingers)" : ")");
     const NpyArray& trans = file.at("trans");
     trans.require_shape({frames, 3});
 
     AmassClip<S> clip;
+    clip.file_joints = columns / 3;
+    const Index used_columns = has_fingers ? 3 * body_joints : columns;
     clip.motion.poses.assign(std::size_t(frames), Pose<S>::rest(num_joints));
     poses.for_each<S>([&](Index i, S value) {
-        clip.motion.poses[std::size_t(i / columns)].rotation_vectors.data()[i % columns] = value;
+        if (i % columns < used_columns) {
+            clip.motion.poses[std::size_t(i / columns)].rotation_vectors.data()[i % columns] = value;
+        }
     });
     trans.for_each<S>([&](Index i, S value) { clip.motion.poses[std::size_t(i / 3)].translation(i % 3) = value; });
     clip.motion.frame_rate =
@@ -58,7 +86,9 @@ AmassClip<S> read_amass_clip(const std::filesystem::path& path, Index num_joints
         clip.gender = gender.front();
     }
     if (file.contains("betas")) {
-        clip.betas = file.at("betas").vector<S>();
+        const NpyArray& betas = file.at("betas");
+        const bool is_row = betas.shape().size() == 2 && betas.shape()[0] == 1;
+        clip.betas = is_row ? VectorX<S>(betas.matrix<S>().transpose()) : betas.vector<S>();
         require(clip.betas.allFinite(), file.at("betas").source(), ": expected finite values");
     }
     clip.motion.validate(file.path(), num_joints);
@@ -67,8 +97,9 @@ AmassClip<S> read_amass_clip(const std::filesystem::path& path, Index num_joints
 
 /// The motion alone.
 template <RealScalar S>
-Motion<S> read_amass_motion(const std::filesystem::path& path, Index num_joints) {
-    return read_amass_clip<S>(path, num_joints).motion;
+Motion<S> read_amass_motion(const std::filesystem::path& path, Index num_joints,
+                            AmassHands hands = AmassHands::refuse) {
+    return read_amass_clip<S>(path, num_joints, hands).motion;
 }
 
 /// Writes `clip` in the same layout.

@@ -61,6 +61,7 @@ TEST_CASE("both spellings of the frame rate, gender and betas are read") {
     const AmassClip<double> clip = read_amass_clip<double>(folder / "m.npz", joints);
     CHECK(clip.motion.frame_rate == 120.0);
     CHECK(clip.gender == "female");
+    CHECK(clip.file_joints == joints);
     CHECK(clip.betas == VectorX<double>::Constant(10, 0.5));
 }
 
@@ -88,6 +89,54 @@ TEST_CASE("a motion for another skeleton is refused") {
     CHECK(refusal([&] { static_cast<void>(read_amass_motion<double>(folder / "m.npz", 24)); }) ==
           (folder / "m.npz").string() +
               ": array 'poses': has 9 columns, expected 72 for 24 joints (a motion for another skeleton)");
+}
+
+TEST_CASE("files with fingers are refused, or lose them on request") {
+    const TemporaryFolder folder;
+    for (const Index file_joints : {Index(52), Index(55)}) {
+        NpyArrays arrays = sample_arrays();
+        const MatrixX<double> poses = MatrixX<double>::NullaryExpr(
+            4, 3 * file_joints, [](Index t, Index k) { return double(t) + 0.001 * double(k); });
+        arrays["poses"] = NpyArray::from_matrix(poses);
+        arrays["gender"] = NpyArray::from_strings({"male"}, {});
+        arrays["betas"] = NpyArray::from_values(std::span<const double>(std::vector<double>(16, 0.5)), {16});
+        arrays["dmpls"] = NpyArray::from_matrix(MatrixX<double>::Zero(4, 8));
+        write_npz(folder / "m.npz", arrays);
+        CHECK(contains(refusal([&] { static_cast<void>(read_amass_clip<double>(folder / "m.npz", 24)); }),
+                       "expected 72 for 24 joints (a motion for another skeleton: AmassHands::at_rest takes its body"));
+        const AmassClip<double> clip = read_amass_clip<double>(folder / "m.npz", 24, AmassHands::at_rest);
+        CHECK(clip.file_joints == file_joints);
+        for (Index t = 0; t < 4; ++t) {
+            const Matrix3X<double>& rotations = clip.motion.poses[std::size_t(t)].rotation_vectors;
+            CHECK(rotations.cols() == 24);
+            CHECK(rotations.leftCols(22).reshaped() == poses.row(t).head(66).transpose());
+            CHECK(rotations.rightCols(2).isZero(0));
+        }
+        CHECK(clip.gender == "male");
+        CHECK(clip.betas == VectorX<double>::Constant(16, 0.5));
+        // The skeleton that has the fingers keeps them; no other skeleton gets a part of the joints.
+        const auto whole = read_amass_clip<double>(folder / "m.npz", file_joints, AmassHands::at_rest);
+        CHECK(whole.motion.poses[1].rotation_vectors.reshaped() == poses.row(1).transpose());
+        CHECK(contains(
+            refusal([&] { static_cast<void>(read_amass_motion<double>(folder / "m.npz", 22, AmassHands::at_rest)); }),
+            "expected 66 for 22 joints (a motion for another skeleton)"));
+    }
+}
+
+TEST_CASE("shape coefficients are cut or filled up to those of a body") {
+    const VectorX<double> betas = VectorX<double>::LinSpaced(4, 1.0, 4.0);
+    CHECK(shape_coefficients(betas, 2) == Eigen::Vector2d(1, 2));
+    CHECK(shape_coefficients(betas, 5) == (VectorX<double>(5) << 1, 2, 3, 4, 0).finished());
+    CHECK(shape_coefficients(VectorX<double>(), 3).isZero(0));
+}
+
+TEST_CASE("betas may be a row") {
+    const TemporaryFolder folder;
+    NpyArrays arrays = sample_arrays();
+    arrays["betas"] = NpyArray::from_matrix((MatrixX<double>(1, 3) << 1, 2, 3).finished());
+    write_npz(folder / "m.npz", arrays);
+    CHECK(read_amass_clip<double>(folder / "m.npz", joints).betas == Eigen::Vector3d(1, 2, 3));
+    CHECK(contains(refused_with("betas", NpyArray::from_matrix(MatrixX<double>::Zero(2, 3))), "shape is (2, 3)"));
 }
 
 TEST_CASE("arrays that are missing or do not fit are refused") {
