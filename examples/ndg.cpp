@@ -4,6 +4,7 @@
 // Neural deformation gradients from end to end: training data by the quasi-static reference, training, evaluation,
 // animation (Nolte et al. 2026). Each subcommand has its own source in ndg/.
 #include "ndg/generate.hpp"
+#include "ndg/train.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     try {
         examples::add_generate(app);
+        examples::add_train(app);
         CLI11_PARSE(app, argc, argv);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "ndg: %s\n", error.what());
