@@ -17,9 +17,9 @@ foreach(floor RANGE 7)
     endforeach()
 endforeach()
 
-# Of one floor, the systems stand on the anatomy that prepares their bodies.
+# Of one floor, the systems stand on the anatomy that prepares their bodies, and are measured.
 set(neighbours_of_avatar anatomy)
-set(neighbours_of_ndg anatomy)
+set(neighbours_of_ndg anatomy metric)
 
 softtissue_list_headers(headers "${INCLUDE_DIR}")
 foreach(header IN LISTS headers)
