@@ -94,7 +94,7 @@ void write_json(const Settings& settings, const DatasetFolder& folder, const Gen
     for (const DatasetSplit split : all_dataset_splits) {
         json["splits"][to_string(split)] = folder.finished(split).size();
     }
-    AtomicFile file(settings.json);
+    AtomicFile file(settings.json + suffix);
     file.write(json.dump(2) + "\n");
     file.commit();
 }
@@ -111,7 +111,7 @@ void print_outcome(const Settings& settings, const DatasetFolder& folder, const 
         std::printf("%td new in %.0f s, %.2f s each, %.1f Newton iterations each\n", progress.newly_done, elapsed,
                     elapsed / double(progress.newly_done), double(progress.iterations) / double(progress.newly_done));
     }
-    for (const Index i : folder.failed()) {
+    for (const Index i : folder.failed()) {  // in all shards
         std::printf("failed: sample %td (%s): %s\n", i, to_string(folder.plan().samples[size_t(i)].split),
                     folder.failure(i).c_str());
     }
@@ -131,12 +131,13 @@ void generate(const Settings& settings) {
     const nlohmann::ordered_json wanted = definition(body, clips, shapes, settings.data, options.samples);
     const SkeletalLayers<double> skeleton{{}, body.tree, body.joint_names};
     const BodyFunction maker = layered_bodies(body);
-    if (!DatasetFolder::has_plan(settings.out)) {
+    if (mpi.shard().index == 0 && !DatasetFolder::has_plan(settings.out)) {
         SkeletalLayers<double> mean = skeleton;
         mean.body = maker(VectorX<double>::Zero(shapes));
         DatasetFolder::create(settings.out, wanted,
                               make_dataset_plan(clips, shapes, settings.data, ThreadExecutor(settings.threads)), mean);
     }
+    mpi.wait_for_all();
     const DatasetFolder folder(settings.out);
     folder.require_definition(wanted);
     const double begin = seconds();
@@ -150,7 +151,7 @@ void generate(const Settings& settings) {
     };
     const GenerationProgress progress = compute_samples(folder, maker, options, watch);
     print_outcome(settings, folder, progress, seconds() - begin);
-    write_json(settings, folder, progress, seconds() - begin);
+    write_json(settings, shard, folder, progress, seconds() - begin);
 }
 
 }  // namespace
@@ -181,11 +182,13 @@ void add_generate(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--shard", settings->shard,
                         "i/n: the i-th (from 0) of n parts of the work; default: MPI's rank");
-    command->add_option("--limit", settings->limit, "stop after so many samples; 0: no limit")->capture_default_str();
+    command->add_option("--limit", settings->limit, "stop after so many samples; 0: no limit")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     command->add_option("--scale", settings->scale, "sizes where no others are given")
         ->check(CLI::IsMember({"small", "paper"}))
         ->capture_default_str();
-    command->add_option("--json", settings->json, "file for counts and times");
+    command->add_option("--json", settings->json, "file for counts and times; of shard i of several: FILE.i");
     command->callback([settings, samples, bodies] {
         if (settings->scale == "paper") {
             const DatasetOptions given = settings->data;

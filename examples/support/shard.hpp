@@ -5,7 +5,7 @@
 
 #include <softtissue/core/error.hpp>
 
-#ifdef SOFTTISSUE_EXAMPLES_HAVE_MPI
+#ifdef SOFTTISSUE_HAS_MPI
 #include <mpi.h>
 #endif
 
@@ -39,7 +39,7 @@ inline Shard parse_shard(const std::string& text) {
 class MpiShard {
 public:
     MpiShard() {
-#ifdef SOFTTISSUE_EXAMPLES_HAVE_MPI
+#ifdef SOFTTISSUE_HAS_MPI
         MPI_Init(nullptr, nullptr);
         MPI_Comm_rank(MPI_COMM_WORLD, &shard_.index);
         MPI_Comm_size(MPI_COMM_WORLD, &shard_.count);
@@ -48,7 +48,7 @@ public:
     MpiShard(const MpiShard&) = delete;
     MpiShard& operator=(const MpiShard&) = delete;
     ~MpiShard() {
-#ifdef SOFTTISSUE_EXAMPLES_HAVE_MPI
+#ifdef SOFTTISSUE_HAS_MPI
         MPI_Finalize();
 #endif
     }

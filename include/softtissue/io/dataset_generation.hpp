@@ -20,6 +20,7 @@
 #include <softtissue/ndg/sample_generator.hpp>
 #include <softtissue/ndg/shaped_body.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <mutex>
@@ -83,22 +84,31 @@ public:
     }
 
 private:
-    /// What a killed run left half written.
+    /// What a killed run left half written; nothing that another shard may be writing.
     void remove_stale_files() const {
-        for (const char* name : {"bodies", "samples", "failed"}) {
-            for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / name)) {
-                const std::string file = entry.path().filename().string();
-                const size_t digits = file.find_first_not_of("0123456789");
-                if (file.find(".part") == std::string::npos || digits == 0 || digits > 9) {
-                    continue;
-                }
-                const Index number = std::stol(file.substr(0, digits));
-                const DatasetPlan& plan = folder_.plan();
-                const bool is_body = std::string(name) == "bodies";
-                if (number < (is_body ? plan.num_bodies() : plan.num_samples()) &&
-                    (is_body ? number : plan.samples[size_t(number)].body) % options_.num_shards == options_.shard) {
-                    std::filesystem::remove(entry.path());
-                }
+        const DatasetPlan& plan = folder_.plan();
+        remove_stale_files(folder_.path(), [&](Index) { return options_.num_shards == 1; });
+        remove_stale_files(folder_.path() / "bodies", [&](Index body) { return is_mine(body); });
+        for (const char* name : {"samples", "failed"}) {
+            remove_stale_files(folder_.path() / name, [&](Index sample) {
+                return sample < plan.num_samples() && is_mine(plan.samples[size_t(sample)].body);
+            });
+        }
+    }
+
+    bool is_mine(Index body) const { return body % options_.num_shards == options_.shard; }
+
+    /// Those whose name begins with a number for which `is_stale`; no number counts as 0.
+    template <class Condition>
+    static void remove_stale_files(const std::filesystem::path& path, const Condition& is_stale) {
+        for (const auto& entry : std::filesystem::directory_iterator(path)) {
+            const std::string file = entry.path().filename().string();
+            Index number = 0;
+            for (size_t k = 0; k < std::min(file.size(), size_t(9)) && file[k] >= '0' && file[k] <= '9'; ++k) {
+                number = 10 * number + (file[k] - '0');
+            }
+            if (file.find(".part") != std::string::npos && is_stale(number)) {
+                std::filesystem::remove(entry.path());
             }
         }
     }
