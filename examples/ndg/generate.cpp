@@ -82,19 +82,26 @@ nlohmann::ordered_json definition(const SmplBody<double>& body, const std::vecto
     return json;
 }
 
-void write_json(const Settings& settings, const DatasetFolder& folder, const GenerationProgress& progress,
-                double elapsed) {
+/// Each of several shards writes its own file.
+void write_json(const Settings& settings, const Shard& shard, const DatasetFolder& folder,
+                const GenerationProgress& progress, double elapsed) {
     if (settings.json.empty()) {
         return;
     }
-    nlohmann::ordered_json json{
-        {"folder", settings.out},    {"samples", progress.total},         {"finished", progress.finished},
-        {"failed", progress.failed}, {"newly_done", progress.newly_done}, {"newton_iterations", progress.iterations},
-        {"seconds", elapsed},        {"threads", settings.threads}};
+    nlohmann::ordered_json json{{"folder", settings.out},
+                                {"shard", shard.index},
+                                {"shards", shard.count},
+                                {"samples", progress.total},
+                                {"finished", progress.finished},
+                                {"failed", progress.failed},
+                                {"newly_done", progress.newly_done},
+                                {"newton_iterations", progress.iterations},
+                                {"seconds", elapsed},
+                                {"threads", settings.threads}};
     for (const DatasetSplit split : all_dataset_splits) {
         json["splits"][to_string(split)] = folder.finished(split).size();
     }
-    AtomicFile file(settings.json + suffix);
+    AtomicFile file(settings.json + (shard.count > 1 ? "." + std::to_string(shard.index) : ""));
     file.write(json.dump(2) + "\n");
     file.commit();
 }

@@ -57,6 +57,13 @@ public:
         return shard_;
     }
 
+    /// Returns when all ranks have come here.
+    void wait_for_all() const {
+#ifdef SOFTTISSUE_HAS_MPI
+        MPI_Barrier(MPI_COMM_WORLD);
+#endif
+    }
+
 private:
     Shard shard_;
 };
