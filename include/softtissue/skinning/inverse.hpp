@@ -17,6 +17,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/linalg/cofactor.hpp>
+#include <softtissue/linalg/symmetric_eigen.hpp>
 #include <softtissue/skinning/posed_body.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -66,8 +67,7 @@ template <RealScalar S>
 S signed_smallest_singular_value(const Matrix3<S>& A) {
     const Matrix3<S> C = cofactor(A);
     const Matrix3<S> gram = C.transpose() * C;
-    const Eigen::SelfAdjointEigenSolver<Matrix3<S>> solver(gram, Eigen::EigenvaluesOnly);
-    return detail::singular_value_from_cofactor(A, C, solver.eigenvalues()(2));
+    return detail::singular_value_from_cofactor(A, C, symmetric_eigen<S, 3>(gram).values.maxCoeff());
 }
 
 /// Finds the vertex whose blended transform is closest to singular (of several within sqrt(epsilon), any), and how
