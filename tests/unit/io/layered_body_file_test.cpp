@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 using namespace softtissue;
 using namespace softtissue_test;
 using namespace io_test;
@@ -85,7 +87,8 @@ TEST_CASE("files that do not fit together are refused, with the file's name") {
     refused("cells", NpyArray::from_columns(Connectivity<6>::Zero(6, 3).eval()));
     refused("triangles", NpyArray::from_columns(Triangles::Constant(3, 180, -1).eval()));
     refused("joints", NpyArray::from_columns(Matrix3X<double>::Zero(3, 3).eval()));
-    refused("rest_positions", NpyArray::from_columns(Matrix3X<double>::Constant(3, 300, NAN).eval()));
+    refused("rest_positions", NpyArray::from_columns(
+                                  Matrix3X<double>::Constant(3, 300, std::numeric_limits<double>::quiet_NaN()).eval()));
     refused("rest_positions", NpyArray::from_columns(Matrix3X<double>::Zero(3, 299).eval()));
     refused("weights", NpyArray::from_matrix(MatrixX<double>::Constant(300, 1, 1.0).eval()));
 }
