@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// ctest: generate --samples 10 --bodies 5 --outlier-samples 0 --limit 1 --out ndg_test
+// ctest: generate --samples 10 --bodies 5 --outlier-samples 1 --outlier-bodies 1 --out ndg_test
+// ctest: train --data ndg_test --model ndg-pca --epochs 2 --out ndg_test/model.safetensors
+// ctest: evaluate --data ndg_test --models ndg_test/model.safetensors --methods gradient,lbs --out ndg_test/evaluation
+// ctest: animate --model ndg_test/model.safetensors --frames 3 --shots 2 --out ndg_test/animation.glb
 //
 // Neural deformation gradients from end to end: training data by the quasi-static reference, training, evaluation,
 // animation (Nolte et al. 2026). Each subcommand has its own source in ndg/.
+#include "ndg/animate.hpp"
+#include "ndg/evaluate.hpp"
 #include "ndg/generate.hpp"
 #include "ndg/train.hpp"
 
@@ -17,6 +22,8 @@ int main(int argc, char** argv) {
     try {
         examples::add_generate(app);
         examples::add_train(app);
+        examples::add_evaluate(app);
+        examples::add_animate(app);
         CLI11_PARSE(app, argc, argv);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "ndg: %s\n", error.what());

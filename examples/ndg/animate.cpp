@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "animate.hpp"
+
+#include "../support/layered_pictures.hpp"
+#include "../support/progress.hpp"
+
+#include <softtissue/core/thread_executor.hpp>
+#include <softtissue/io/amass_file.hpp>
+#include <softtissue/io/neural_model_file.hpp>
+#include <softtissue/metric/volume_change.hpp>
+#include <softtissue/model/procedural_motion.hpp>
+#include <softtissue/ndg/neural_animation.hpp>
+#include <softtissue/skinning/joint_transforms.hpp>
+#include <softtissue/solver/poisson_reconstruction.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace examples {
+
+namespace {
+
+struct Settings {
+    std::string model, motion, out = "ndg.glb", picture;
+    SceneFiles files;
+    std::vector<double> betas;
+    double frame_rate = 30.0;
+    int frames = 0;
+    int shots = 6;
+    int threads = 1;
+};
+
+/// What the frames to be animated are: `count` of the motion's, `stride` apart.
+struct Frames {
+    Index stride = 1, count = 0;
+};
+
+Frames choose_frames(const Settings& settings, const Motion<Scalar>& motion) {
+    Frames frames;
+    frames.stride = std::max<Index>(1, Index(std::lround(motion.frame_rate / settings.frame_rate)));
+    frames.count = (motion.num_frames() + frames.stride - 1) / frames.stride;
+    if (settings.frames > 0) {
+        frames.count = std::min<Index>(frames.count, settings.frames);
+    }
+    return frames;
+}
+
+void animate(const Settings& settings) {
+    watch_interrupt();
+    const NeuralModel<float> model = read_neural_model<float>(settings.model);
+    const Scene scene = make_scene(
+        settings.files, Eigen::Map<const VectorX<Scalar>>(settings.betas.data(), Index(settings.betas.size())));
+    const Motion<Scalar> motion = settings.motion.empty()
+                                      ? procedural_motion<Scalar>()
+                                      : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
+    const ThreadExecutor executor(settings.threads);
+    const LayeredBody<Scalar>& layered = scene.layered;
+    PoissonReconstruction<Prism6, Scalar> poisson(layered.mesh,
+                                                  PrescribedVertices(layered.mesh.num_vertices(), layered.prescribed));
+    NeuralAnimation<Scalar, ThreadExecutor> network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson,
+                                                    executor);
+
+    const Frames frames = choose_frames(settings, motion);
+    const Index num_shots = std::min<Index>(settings.shots, frames.count);
+    Animation animation(scene, {model.name}, motion.frame_rate / double(frames.stride));
+    std::vector<Shot> shots;
+    std::vector<double> milliseconds;
+    Index most_inverted = 0;
+    Matrix3X<Scalar> x;
+    Progress progress("animating", int(frames.count));
+    for (Index k = 0; k < frames.count && !is_interrupted(); ++k) {
+        const Pose<Scalar>& pose = motion.poses[size_t(k * frames.stride)];
+        const auto transforms = joint_transforms<Scalar>(scene.skin.tree(), scene.skin.rest_joints(), pose);
+        const double begin = seconds();
+        network.pose_into(pose, transforms, x);
+        milliseconds.push_back(1e3 * (seconds() - begin));
+        most_inverted = std::max(most_inverted, volume_change(layered.mesh, x).num_inverted);
+        Scene::Frame frame = scene.frame(pose, x);
+        animation.add(0, frame);
+        if (k == (Index(shots.size()) * 2 + 1) * frames.count / (2 * num_shots)) {
+            char label[32];
+            std::snprintf(label, sizeof label, "%.2f s", double(k * frames.stride) / motion.frame_rate);
+            shots.push_back(make_shot(label, scene, x, std::move(frame)));
+        }
+        progress.update(int(k) + 1);
+    }
+    require(!milliseconds.empty(), "interrupted before the first frame");
+    animation.write(settings.out);
+    std::nth_element(milliseconds.begin(), milliseconds.begin() + std::ptrdiff_t(milliseconds.size() / 2),
+                     milliseconds.end());
+    std::printf(
+        "%d frames%s, %.1f ms a frame (median: network, reconstruction), at most %d of %d cells inverted\n  %s\n",
+        int(milliseconds.size()), is_interrupted() ? " until the interruption" : "",
+        milliseconds[milliseconds.size() / 2], int(most_inverted), int(layered.mesh.num_cells()), settings.out.c_str());
+    if (!shots.empty()) {
+        const std::filesystem::path picture = settings.picture.empty()
+                                                  ? std::filesystem::path(settings.out).replace_extension(".png")
+                                                  : std::filesystem::path(settings.picture);
+        write_comparison(picture, scene, shots, model.name + ": local volume change; bones and muscles below");
+        std::printf("  %s\n", picture.c_str());
+    }
+}
+
+}  // namespace
+
+void add_animate(CLI::App& app) {
+    const auto settings = std::make_shared<Settings>();
+    CLI::App* const command =
+        app.add_subcommand("animate",
+                           "A body in motion by a trained model: skin, muscles and bones as .glb, "
+                           "and a contact sheet beside it.");
+    command->add_option("--model", settings->model, "trained model (.safetensors)")->required();
+    command->add_option("--body", settings->files.body, "body in SMPL's layout (.npz); default: the embedded one");
+    command->add_option("--motion", settings->motion, "motion in AMASS's layout (.npz); default: the embedded one");
+    command->add_option("--betas", settings->betas, "shape coefficients of the body, as 1.2,-0.5")->delimiter(',');
+    command->add_option("--bones", settings->files.bones, "bones to embed (.obj), in place of the procedural ones");
+    command->add_option("--muscles", settings->files.muscles,
+                        "muscles to embed (.obj), in place of the procedural ones");
+    command->add_option("--frame-rate", settings->frame_rate, "frames a second, about")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--frames", settings->frames, "at most so many; 0: all")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command->add_option("--shots", settings->shots, "frames on the contact sheet")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--threads", settings->threads, "threads; the result does not depend on them")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--out", settings->out, "the animation")->capture_default_str();
+    command->add_option("--picture", settings->picture, "the contact sheet (default: as the animation, .png)");
+    command->callback([settings] { animate(*settings); });
+}
+
+}  // namespace examples

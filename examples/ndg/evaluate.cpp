@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "evaluate.hpp"
+
+#include "../support/progress.hpp"
+#include "error_picture.hpp"
+#include "evaluation_run.hpp"
+#include "evaluation_tables.hpp"
+
+#include <softtissue/io/neural_model_file.hpp>
+#include <softtissue/io/smpl_file.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace examples {
+
+namespace {
+
+struct Settings {
+    std::string data, body, out = "ndg_evaluation", json;
+    std::vector<std::string> models;
+    std::vector<std::string> methods{"gradient", "lbs", "projective", "corotated"};
+    std::vector<std::string> splits{"test", "outlier"};
+    int threads = 1;
+    Index max_samples = 0;
+};
+
+DatasetSplit split_of(const std::string& name) {
+    return *std::find_if(all_dataset_splits.begin(), all_dataset_splits.end(),
+                         [&](DatasetSplit split) { return name == to_string(split); });
+}
+
+/// Two models of one name are told apart by their files.
+EvaluationSetup read_setup(const Settings& settings) {
+    EvaluationSetup setup{
+        .models = {}, .methods = settings.methods, .threads = settings.threads, .max_samples = settings.max_samples};
+    for (const std::string& file : settings.models) {
+        setup.models.push_back({{}, file, read_neural_model<float>(file)});
+    }
+    for (EvaluatedModel& model : setup.models) {
+        const auto has_this_name = [&](const EvaluatedModel& other) { return other.model.name == model.model.name; };
+        const bool is_alone = std::count_if(setup.models.begin(), setup.models.end(), has_this_name) == 1;
+        model.name = model.model.name + (is_alone ? "" : "@" + std::filesystem::path(model.file).stem().string());
+    }
+    return setup;
+}
+
+/// The models of table 1; without any, the classical methods.
+void write_pictures(const Settings& settings, const DatasetFolder& data, const EvaluationSetup& setup,
+                    const SplitResult& split) {
+    std::vector<ErrorMap> maps;
+    const auto add = [&](const std::string& name) {
+        const MethodEvaluation<double>& evaluation = split.find(name)->evaluation;
+        maps.push_back(
+            {name, evaluation.summary(&PoseFigures<double>::position).mean, evaluation.mean_vertex_errors()});
+    };
+    for (const EvaluatedModel& model : setup.models) {
+        if (model.is_whole()) {
+            add(model.name);
+        }
+    }
+    for (const std::string& name : setup.methods) {
+        if (setup.models.empty()) {
+            add(name);
+        }
+    }
+    if (maps.empty()) {
+        return;
+    }
+    const ErrorSurface surface = settings.body.empty()
+                                     ? layered_surface(data.mean_body())
+                                     : whole_surface(data.mean_body(), read_smpl_body<double>(settings.body));
+    const std::filesystem::path path =
+        std::filesystem::path(settings.out) / ("errors_" + std::string(to_string(split.split)) + ".png");
+    const std::string title = "Error of each vertex, " + std::to_string(split.samples.size()) +
+                              " samples of the split '" + to_string(split.split) + "'";
+    write_error_maps(path, surface, maps, title);
+    std::printf("  %s\n", path.c_str());
+}
+
+void evaluate(const Settings& settings) {
+    watch_interrupt();
+    const double begin = seconds();
+    std::filesystem::create_directories(settings.out);
+    const DatasetFolder data(settings.data);
+    const EvaluationSetup setup = read_setup(settings);
+    std::vector<SplitResult> splits;
+    for (const std::string& name : settings.splits) {
+        if (is_interrupted()) {
+            break;
+        }
+        splits.push_back(evaluate_split(data, split_of(name), setup));
+        if (splits.back().samples.empty()) {
+            std::fprintf(stderr, "%s: no finished sample of the split '%s'\n", settings.data.c_str(), name.c_str());
+        }
+    }
+    print_tables(setup, splits);
+    const std::filesystem::path json = settings.json.empty() ? std::filesystem::path(settings.out) / "results.json"
+                                                             : std::filesystem::path(settings.json);
+    write_tables(json, data, setup, splits, seconds() - begin);
+    std::printf("%s\n  %s\n", is_interrupted() ? "interrupted; results up to there in" : "results in", json.c_str());
+    for (const SplitResult& split : splits) {
+        if (!split.samples.empty()) {
+            write_pictures(settings, data, setup, split);
+        }
+    }
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app) {
+    const auto settings = std::make_shared<Settings>();
+    CLI::App* const command = app.add_subcommand(
+        "evaluate",
+        "Trained models beside classical methods on samples that no training has seen: tables, errors on the body.");
+    command->add_option("--data", settings->data, "folder of the data set")->required();
+    command->add_option("--models", settings->models, "trained models (.safetensors)");
+    command
+        ->add_option("--methods", settings->methods,
+                     "classical ones: of lbs, dqs, gradient, projective, corotated; none")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"lbs", "dqs", "gradient", "projective", "corotated", "none"}))
+        ->capture_default_str();
+    command->add_option("--split", settings->splits, "of test, outlier, validation, train")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"test", "outlier", "validation", "train"}))
+        ->capture_default_str();
+    command->add_option("--max-samples", settings->max_samples, "at most so many of each split; 0: all")
+        ->capture_default_str();
+    command->add_option("--threads", settings->threads, "bodies at a time; the figures do not depend on it")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--body", settings->body,
+                        "the data set's body in SMPL's layout (.npz): pictures then show all of it");
+    command->add_option("--out", settings->out, "folder for results")->capture_default_str();
+    command->add_option("--json", settings->json, "file for the tables (default: OUT/results.json)");
+    command->callback([settings] {
+        std::erase(settings->methods, "none");
+        evaluate(*settings);
+    });
+}
+
+}  // namespace examples
