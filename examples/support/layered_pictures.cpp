@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
 namespace examples {
@@ -48,20 +47,20 @@ Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scal
 
 void write_comparison(const std::filesystem::path& path, const Scene& scene, const std::vector<Shot>& shots,
                       const std::string& title) {
-    constexpr int width = 300, height = 520, top = 84;
-    const int columns = int(shots.size());
-    Picture picture(std::max(760, width * columns), top + 2 * height + 60);
-    picture.text(title, 20, 36, 24);
+    constexpr int width = 300, largest_height = 520, top = 84;
     const View view(-0.35, 0.08);
-    double scale = std::numeric_limits<double>::infinity();  // of all, each body in the middle of its panel
-    std::vector<Vector3<Scalar>> centers;
+    std::vector<Vector3<Scalar>> centers;  // each body in the middle of its panel, all at one scale
+    Vector3<Scalar> half = Vector3<Scalar>::Zero();
     for (const Shot& shot : shots) {
         const Matrix3X<Scalar>& skin = shot.frame.skin;
         centers.push_back(0.5 * (skin.rowwise().minCoeff() + skin.rowwise().maxCoeff()));
-        const Matrix3X<Scalar> seen = view.rotation * (skin.colwise() - centers.back());
-        scale = std::min(scale, 0.47 * std::min(width / seen.row(0).cwiseAbs().maxCoeff(),
-                                                height / seen.row(1).cwiseAbs().maxCoeff()));
+        half = half.cwiseMax((view.rotation * (skin.colwise() - centers.back())).cwiseAbs().rowwise().maxCoeff());
     }
+    const double scale = 0.47 * std::min(width / half.x(), largest_height / half.y());
+    const int height = int(half.y() * scale / 0.47);
+    const int columns = int(shots.size());
+    Picture picture(std::max(760, width * columns), top + 2 * height + 60);
+    picture.text(title, 20, 36, 24);
     const auto plain = [](Index n, const Eigen::Vector3f& color) { return Matrix3X<float>(color.replicate(1, n)); };
     for (int k = 0; k < columns; ++k) {
         const Shot& shot = shots[size_t(k)];
