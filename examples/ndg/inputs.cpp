@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "inputs.hpp"
 
-#include <softtissue/io/amass_file.hpp>
+#include "../support/amass_motion.hpp"
+
 #include <softtissue/io/smpl_file.hpp>
 #include <softtissue/model/procedural_human.hpp>
 #include <softtissue/model/procedural_motion.hpp>
@@ -25,7 +26,7 @@ std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const
     std::vector<DatasetClip> clips;
     for (const auto* list : {&paths, &held_out}) {
         for (const std::string& path : *list) {
-            clips.push_back({std::filesystem::path(path).stem().string(), read_amass_motion<double>(path, num_joints),
+            clips.push_back({std::filesystem::path(path).stem().string(), read_motion(path, num_joints),
                              list == &held_out});
         }
     }
