@@ -193,7 +193,6 @@ SplitResult evaluate_split(const DatasetFolder& data, DatasetSplit split, const 
         samples.resize(size_t(setup.max_samples));
     }
     const std::vector<SampleRange> ranges = ranges_by_body(data, samples);
-    result.num_bodies = Index(ranges.size());
     Progress progress(std::string("evaluating ") + to_string(split), std::max(1, int(samples.size())));
     OrderedResults ordered(result, samples, progress);
     std::atomic<size_t> next_range{0};
@@ -226,6 +225,7 @@ SplitResult evaluate_split(const DatasetFolder& data, DatasetSplit split, const 
         }
     }
     ordered.take_rest();
+    result.num_bodies = Index(ranges_by_body(data, result.samples).size());
     result.is_interrupted = is_interrupted();
     return result;
 }
