@@ -69,6 +69,7 @@ public:
         : settings_(settings),
           variant_(variants.at(settings.model)),
           data_(settings.data),
+          split_(training_split(data_, settings.samples)),
           executor_(settings.threads) {}
 
     void run() {
@@ -90,13 +91,12 @@ private:
     void load() {
         const double begin = seconds();
         std::unique_ptr<Progress> line;
-        loaded_ = load_training_data(data_, {.network = variant_.network, .max_samples = settings_.samples}, executor_,
-                                     [&](int done, int total) {
-                                         if (line == nullptr) {
-                                             line = std::make_unique<Progress>("samples", total);
-                                         }
-                                         line->update(done);
-                                     });
+        loaded_ = load_training_data(data_, split_, {.network = variant_.network}, executor_, [&](int done, int total) {
+            if (line == nullptr) {
+                line = std::make_unique<Progress>("samples", total);
+            }
+            line->update(done);
+        });
         num_training_ = loaded_.training.count();
         num_validation_ = loaded_.validation.count();
         std::printf(
@@ -123,7 +123,9 @@ private:
 
     Mlp<float> train_compressed() {
         const double begin = seconds();
+        NetworkSamples<float> validation;
         if (variant_.network.kind == NetworkKind::gradient) {
+            validation = loaded_.validation;
             const LogarithmCounts counts = residual_logarithms_in_place<float>(loaded_.training.targets, executor_);
             residual_logarithms_in_place<float>(loaded_.validation.targets, executor_);
             std::printf("logarithms: %td cells repaired, %td dropped\n", counts.repaired, counts.dropped);
@@ -136,7 +138,13 @@ private:
         Mlp<float> mlp = new_network(targets.decoder.weight.cols());
         mlp.parameters() = train_stage("training", settings_.learning_rate, settings_.epochs, mlp, targets.loss,
                                        targets.training, targets.validation);
-        return fold_decoder(mlp, targets.decoder);
+        mlp = fold_decoder(mlp, targets.decoder);
+        if (validation.count() > 0) {
+            const double loss = mean_gradient_loss(mlp, validation, settings_.batch, executor_);
+            std::printf("validation loss of the gradients: %.4g\n", loss);
+            notes_["gradient_loss"] = std::to_string(loss);
+        }
+        return mlp;
     }
 
     Mlp<float> train_whole(Mlp<float> mlp, const std::string& name, double learning_rate, Index epochs) {
@@ -297,6 +305,7 @@ private:
     Settings settings_;
     Variant variant_;
     DatasetFolder data_;
+    TrainingSplit split_;
     ThreadExecutor executor_;
     TrainingData loaded_;
     Index num_training_ = 0, num_validation_ = 0;

@@ -96,24 +96,28 @@ ShapeSpace<double> learn_shapes(const DatasetFolder& data, const std::vector<Ind
 
 }  // namespace
 
-TrainingData load_training_data(const DatasetFolder& data, const TrainingDataOptions& options,
-                                const ThreadExecutor& executor, const std::function<void(int, int)>& progress) {
-    std::vector<Index> training = data.finished(DatasetSplit::train);
-    if (options.max_samples > 0 && Index(training.size()) > options.max_samples) {
-        training.resize(size_t(options.max_samples));
+TrainingSplit training_split(const DatasetFolder& data, Index max_samples) {
+    TrainingSplit split{data.finished(DatasetSplit::train), data.finished(DatasetSplit::validation)};
+    if (max_samples > 0 && Index(split.training.size()) > max_samples) {
+        split.training.resize(size_t(max_samples));
     }
-    const std::vector<Index> validation = data.finished(DatasetSplit::validation);
-    require(!training.empty() && !validation.empty(), data.path().string(), ": ", training.size(), " training and ",
-            validation.size(), " validation samples are finished, expected some of both");
+    require(!split.training.empty() && !split.validation.empty(), data.path().string(), ": ", split.training.size(),
+            " training and ", split.validation.size(), " validation samples are finished, expected some of both");
+    return split;
+}
+
+TrainingData load_training_data(const DatasetFolder& data, const TrainingSplit& split,
+                                const TrainingDataOptions& options, const ThreadExecutor& executor,
+                                const std::function<void(int, int)>& progress) {
     TrainingData result;
-    result.shape_space = learn_shapes(data, training, options, result.num_bodies, executor);
+    result.shape_space = learn_shapes(data, split.training, options, result.num_bodies, executor);
     const SampleColumns columns(data, options.network);
     const Index num_inputs = num_pose_features(data.tree()) + result.shape_space.num_coefficients();
     std::mutex mutex;
     int done = 0;
-    const int total = int(training.size() + validation.size());
+    const int total = int(split.training.size() + split.validation.size());
     for (const bool is_training : {true, false}) {
-        const std::vector<Index>& indices = is_training ? training : validation;
+        const std::vector<Index>& indices = is_training ? split.training : split.validation;
         NetworkSamples<float>& samples = is_training ? result.training : result.validation;
         samples.inputs.resize(num_inputs, Index(indices.size()));
         samples.targets.resize(columns.num_outputs(), Index(indices.size()));

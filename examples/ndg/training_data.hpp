@@ -12,6 +12,7 @@
 #include <softtissue/ndg/neural_model.hpp>
 
 #include <functional>
+#include <vector>
 
 namespace examples {
 
@@ -25,16 +26,24 @@ struct TrainingData {
     Index skipped_vertices = 0;  // of all training samples, see rest_offsets_into()
 };
 
+/// Numbers of samples, ascending.
+struct TrainingSplit {
+    std::vector<Index> training, validation;
+};
+
+/// What is finished now; of the training at most `max_samples` (0: all), those with the lowest numbers, that is the first bodies.
+TrainingSplit training_split(const DatasetFolder& data, Index max_samples);
+
 struct TrainingDataOptions {
     NetworkOptions network = {};
-    Index max_samples = 0;  // of the training; 0: all. Those with the lowest numbers, that is the first bodies
     double shape_variance = 0.9999;
     Index max_shape_coefficients = 32;
 };
 
-/// Reads all samples; `progress` gets how many are done, of how many.
-TrainingData load_training_data(const DatasetFolder& data, const TrainingDataOptions& options,
-                                const ThreadExecutor& executor, const std::function<void(int, int)>& progress);
+/// Reads the samples; `progress` gets how many are done, of how many.
+TrainingData load_training_data(const DatasetFolder& data, const TrainingSplit& split,
+                                const TrainingDataOptions& options, const ThreadExecutor& executor,
+                                const std::function<void(int, int)>& progress);
 
 /// Targets as coefficients of their principal components.
 struct CompressedTargets {

@@ -75,4 +75,10 @@ TrainingReport run_training(const TrainingRun& settings, const MlpLayers<float>&
     return run(settings, layers, loss, training, validation, state, executor);
 }
 
+double mean_gradient_loss(const Mlp<float>& mlp, const NetworkSamples<float>& samples, Index batch,
+                          const ThreadExecutor& executor) {
+    NetworkTraining<GradientLoss<float>, ThreadExecutor> model(mlp.layers(), {}, samples, samples, batch, executor);
+    return double(model.validation_loss(mlp.parameters()));
+}
+
 }  // namespace examples

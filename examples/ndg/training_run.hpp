@@ -8,7 +8,7 @@
 #include <softtissue/ndg/coefficient_loss.hpp>
 #include <softtissue/ndg/gradient_loss.hpp>
 #include <softtissue/ndg/network_training.hpp>
-#include <softtissue/nn/mlp_layers.hpp>
+#include <softtissue/nn/mlp.hpp>
 
 #include <string>
 
@@ -29,5 +29,9 @@ TrainingReport run_training(const TrainingRun& run, const MlpLayers<float>& laye
 TrainingReport run_training(const TrainingRun& run, const MlpLayers<float>& layers, const CoefficientLoss<float>& loss,
                             const NetworkSamples<float>& training, const NetworkSamples<float>& validation,
                             TrainingState<float>& state, const ThreadExecutor& executor);
+
+/// Of gradients, whatever the network was trained with.
+double mean_gradient_loss(const Mlp<float>& mlp, const NetworkSamples<float>& samples, Index batch,
+                          const ThreadExecutor& executor);
 
 }  // namespace examples
