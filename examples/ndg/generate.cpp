@@ -34,15 +34,6 @@ struct Settings {
     Index limit = 0;
 };
 
-/// The sizes of Nolte et al. 2026, sec. 4.1.
-void set_paper_scale(DatasetOptions& data) {
-    data.samples = 25000;
-    data.bodies = 1500;
-    data.poses = 15000;
-    data.outlier_samples = 250;
-    data.outlier_bodies = 25;
-}
-
 /// All that the files of the data set depend on.
 nlohmann::ordered_json definition(const SmplBody<double>& body, const std::vector<DatasetClip>& clips, Index shapes,
                                   const DatasetOptions& data, const SampleOptions<double>& samples) {
@@ -173,14 +164,17 @@ void add_generate(CLI::App& app) {
     command->add_option("--body", settings->body, "body in SMPL's layout (.npz)");
     command->add_option("--motion", settings->motions, "motions in AMASS's layout (.npz), cut into blocks of time");
     command->add_option("--test-motion", settings->test_motions, "motions for the test alone");
-    CLI::Option* const samples =
-        command->add_option("--samples", data.samples, "samples for training, validation and test")
-            ->capture_default_str();
-    CLI::Option* const bodies = command->add_option("--bodies", data.bodies, "their bodies")->capture_default_str();
-    command->add_option("--poses", data.poses, "their poses; 0: one for each sample")->capture_default_str();
-    command->add_option("--outlier-samples", data.outlier_samples, "samples of shapes far outside the training's")
-        ->capture_default_str();
-    command->add_option("--outlier-bodies", data.outlier_bodies, "their bodies")->capture_default_str();
+    const auto count = [&](const char* name, Index& value, const char* description) {
+        return command->add_option(name, value, description);
+    };
+    CLI::Option* const samples = count("--samples", data.samples, "for training, validation and test (default: 600)");
+    CLI::Option* const bodies = count("--bodies", data.bodies, "their bodies (default: a quarter of the samples)");
+    CLI::Option* const poses = count("--poses", data.poses, "their poses; 0, the default: one for each sample");
+    CLI::Option* const outlier_samples =
+        count("--outlier-samples", data.outlier_samples,
+              "samples of shapes far outside the training's (default: a twentieth of the others)");
+    CLI::Option* const outlier_bodies =
+        count("--outlier-bodies", data.outlier_bodies, "their bodies (default: half as many)");
     command->add_option("--shapes", settings->shapes, "shape coefficients to vary")->capture_default_str();
     command->add_option("--seed", data.seed, "seed")->capture_default_str();
     command->add_option("--out", settings->out, "folder of the data set")->capture_default_str();
@@ -196,13 +190,17 @@ void add_generate(CLI::App& app) {
         ->check(CLI::IsMember({"small", "paper"}))
         ->capture_default_str();
     command->add_option("--json", settings->json, "file for counts and times; of shard i of several: FILE.i");
-    command->callback([settings, samples, bodies] {
-        if (settings->scale == "paper") {
-            const DatasetOptions given = settings->data;
-            set_paper_scale(settings->data);
-            settings->data.samples = samples->count() > 0 ? given.samples : settings->data.samples;
-            settings->data.bodies = bodies->count() > 0 ? given.bodies : settings->data.bodies;
-        }
+    command->callback([=] {
+        const bool is_paper = settings->scale == "paper";  // Nolte et al. 2026, sec. 4.1
+        const auto fill = [](const CLI::Option* option, Index& value, Index otherwise) {
+            value = option->count() > 0 ? value : otherwise;
+        };
+        DatasetOptions& sizes = settings->data;
+        fill(samples, sizes.samples, is_paper ? 25000 : 600);
+        fill(bodies, sizes.bodies, is_paper ? 1500 : std::max<Index>(5, sizes.samples / 4));
+        fill(poses, sizes.poses, is_paper ? 15000 : 0);
+        fill(outlier_samples, sizes.outlier_samples, sizes.samples / 20);
+        fill(outlier_bodies, sizes.outlier_bodies, (sizes.outlier_samples + 1) / 2);
         generate(*settings);
     });
 }
