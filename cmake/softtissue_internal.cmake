@@ -50,9 +50,11 @@ foreach(machine IN ITEMS this every)
 endforeach()
 if(SOFTTISSUE_NATIVE)
     target_compile_options(softtissue_for_this_machine INTERFACE -march=native)
-    # g++ 12 takes the undefined value that its own AVX-512 header starts from for a mistake; tests keep these warnings.
-    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-        target_compile_options(softtissue_for_this_machine INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+    # The vector headers of some compilers (g++ 12: AVX-512) earn false warnings; which ones depends on the machine, and no
+    # build stops for them. Tests, which know no machine, keep every warning as an error.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        target_compile_options(softtissue_for_this_machine INTERFACE
+            -Wno-error -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds)
     endif()
 endif()
 
