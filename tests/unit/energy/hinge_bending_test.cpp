@@ -118,7 +118,7 @@ TEST_CASE("one scale of lengths is as good as another in float") {
     HingeBending<DihedralChord<float>> large_bending(unit.surface, unit.positions, 1.0F);
     HingeBending<DihedralChord<float>> small_bending(unit.surface, small, 1.0F);
     const SequentialExecutor executor;
-    CHECK(small_bending.energy(0x1p-10F * d, executor) == doctest::Approx(large_bending.energy(d, executor)).epsilon(1e-5));
+    CHECK(small_bending.energy(0x1p-10F * d, executor) == doctest::Approx(double(large_bending.energy(d, executor))).epsilon(1e-5));
 }
 
 TEST_CASE("the same bits for any number of threads; nothing is allocated after the first evaluation") {
