@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ctest: generate --samples 10 --bodies 5 --outlier-samples 1 --outlier-bodies 1 --out ndg_test
+// ctest: generate --samples 5 --bodies 5 --outlier-samples 1 --outlier-bodies 1 --out ndg_test
 // ctest: train --data ndg_test --model ndg-pca --epochs 2 --out ndg_test/model.safetensors
 // ctest: evaluate --data ndg_test --models ndg_test/model.safetensors --methods gradient,lbs --out ndg_test/evaluation
 // ctest: animate --model ndg_test/model.safetensors --frames 3 --shots 2 --out ndg_test/animation.glb

@@ -85,7 +85,7 @@ inline void write_error_maps(const std::filesystem::path& path, const ErrorSurfa
     const Eigen::Vector3d size = surface.positions.rowwise().maxCoeff() - surface.positions.rowwise().minCoeff();
     const double scale = 0.96 * std::min(width / size.x(), 700.0 / size.y());
     const int height = int(scale * size.y() / 0.96);
-    Picture picture(std::max(760, margin + panel * int(maps.size())), top + height + 92);
+    Picture picture(std::max(900, margin + panel * int(maps.size())), top + height + 92);
     picture.text(title, margin, 40, 22);
     const double end = error_scale(maps);
     for (size_t k = 0; k < maps.size(); ++k) {
