@@ -34,6 +34,7 @@
 #include <softtissue/anatomy/wrap_flow.hpp>
 #include <softtissue/avatar/soft_tissue_avatar.hpp>
 #include <softtissue/avatar/tissue_model.hpp>
+#include <softtissue/core/byte_hash.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/dual.hpp>
 #include <softtissue/core/error.hpp>
@@ -169,6 +170,7 @@
 #include <softtissue/skinning/resample.hpp>
 #include <softtissue/skinning/retarget.hpp>
 #include <softtissue/skinning/skeleton.hpp>
+#include <softtissue/skinning/skin_points.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 #include <softtissue/skinning/surface_carrier.hpp>
 #include <softtissue/skinning/uniform_cubic_spline.hpp>

@@ -7,6 +7,7 @@
 /// Tests       tests/unit/io/fingerprint_test.cpp
 #pragma once
 
+#include <softtissue/core/byte_hash.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/skinning/motion.hpp>
@@ -22,10 +23,7 @@ namespace softtissue {
 class Fingerprint {
 public:
     Fingerprint& add_bytes(const void* data, std::size_t size) {
-        const auto* const bytes = static_cast<const unsigned char*>(data);
-        for (std::size_t i = 0; i < size; ++i) {
-            hash_ = (hash_ ^ bytes[i]) * 0x100000001b3U;
-        }
+        hash_.add(data, size);
         return *this;
     }
 
@@ -79,13 +77,13 @@ public:
     std::string text() const {
         std::string digits;
         for (int shift = 60; shift >= 0; shift -= 4) {
-            digits += "0123456789abcdef"[(hash_ >> shift) & 0xfU];
+            digits += "0123456789abcdef"[(hash_.value() >> shift) & 0xfU];
         }
         return digits;
     }
 
 private:
-    std::uint64_t hash_ = 0xcbf29ce484222325U;
+    ByteHash hash_;
 };
 
 }  // namespace softtissue

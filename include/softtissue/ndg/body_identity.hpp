@@ -11,6 +11,7 @@
 #pragma once
 
 #include <softtissue/anatomy/layered_body.hpp>
+#include <softtissue/core/byte_hash.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -57,19 +58,14 @@ BodyIdentity body_identity(const LayeredBody<S>& body, const KinematicTree& tree
                            const std::vector<std::string>& joint_names = {}) {
     require(joint_names.empty() || Index(joint_names.size()) == tree.num_joints(),
             "body identity: ", joint_names.size(), " joint names, expected ", tree.num_joints());
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    const auto add = [&hash](std::int32_t number) {
-        for (int byte = 0; byte < 4; ++byte) {
-            hash = (hash ^ ((static_cast<std::uint32_t>(number) >> (8 * byte)) & 0xffU)) * 0x100000001b3U;
-        }
-    };
+    ByteHash hash;
     for (const std::int32_t v : body.mesh.cells.reshaped()) {
-        add(v);
+        hash.add_little_endian(static_cast<std::uint32_t>(v));
     }
     for (const std::int32_t v : body.prescribed) {
-        add(v);
+        hash.add_little_endian(static_cast<std::uint32_t>(v));
     }
-    return {joint_names, tree.parents(), body.mesh.num_vertices(), body.mesh.num_cells(), hash};
+    return {joint_names, tree.parents(), body.mesh.num_vertices(), body.mesh.num_cells(), hash.value()};
 }
 
 }  // namespace softtissue

@@ -20,6 +20,7 @@
 #include <softtissue/skinning/affine_transform.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/skinning/skin_points.hpp>
 #include <softtissue/solver/corotated_linear_solver.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/local_global.hpp>
@@ -130,13 +131,7 @@ public:
 private:
     template <class Policy>
     void skin_into(const Policy& policy, Transforms joint_transforms, Matrix3X<Scalar>& x) {
-        policy.prepare_into(joint_transforms, prepared_joints_);
-        x.resize(3, body_->mesh.num_vertices());
-        executor_->for_each_range(x.cols(), [&](Index begin, Index end) {
-            for (Index v = begin; v < end; ++v) {
-                x.col(v) = policy.blend(prepared_joints_, body_->weights.row(v))(body_->mesh.rest_positions.col(v));
-            }
-        });
+        skin_points_into(policy, joint_transforms, body_->weights, body_->mesh.rest_positions, prepared_joints_, x, *executor_);
     }
 
     void gradient_skin(Transforms joint_transforms, Matrix3X<Scalar>& x) {

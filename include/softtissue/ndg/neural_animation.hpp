@@ -31,6 +31,7 @@
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
 #include <softtissue/skinning/pose.hpp>
+#include <softtissue/skinning/skin_points.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 
@@ -84,7 +85,8 @@ public:
         require(Index(joint_transforms.size()) == tree_.num_joints(), "neural animation: ", joint_transforms.size(),
                 " joint transforms, expected ", tree_.num_joints());
         pose_features_into<N>(tree_, pose, input_.head(num_pose_features(tree_)));
-        skin_into(joint_transforms, x);
+        skin_points_into(LinearBlend<S>(), joint_transforms, body_->weights, body_->mesh.rest_positions,
+                         prepared_joints_, x, *executor_);
         if (vertices_) {
             move_by_rest_offsets<N, S>(*body_, poisson_->prescribed(), joint_transforms,
                                        vertices_->predict(input_, *executor_), x, *executor_);
@@ -114,17 +116,6 @@ private:
         }
         root_rotations_.assign(size_t(body_->mesh.num_cells()), joint_transforms[size_t(tree_.root())].linear);
         return root_rotations_;
-    }
-
-    void skin_into(Transforms joint_transforms, Matrix3X<S>& x) {
-        const LinearBlend<S> policy;
-        policy.prepare_into(joint_transforms, prepared_joints_);
-        x.resize(3, body_->mesh.num_vertices());
-        executor_->for_each_range(x.cols(), [&](Index begin, Index end) {
-            for (Index v = begin; v < end; ++v) {
-                x.col(v) = policy.blend(prepared_joints_, body_->weights.row(v))(body_->mesh.rest_positions.col(v));
-            }
-        });
     }
 
     const NeuralModel<N>* model_;

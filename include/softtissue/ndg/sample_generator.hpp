@@ -23,6 +23,7 @@
 #include <softtissue/skinning/joint_transforms.hpp>
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/skinning/skin_points.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 
@@ -79,12 +80,8 @@ public:
         const auto transforms = joint_transforms<Scalar>(tree_, body_->joints, pose);
         GeneratedSample<Scalar> sample;
         sample.rest_energy = rest_energy_;
-        sample.positions = body_->layered.mesh.rest_positions;
-        policy_.prepare_into(transforms, prepared_joints_);
-        for (Index v = 0; v < sample.positions.cols(); ++v) {
-            sample.positions.col(v) = policy_.blend(
-                prepared_joints_, body_->layered.weights.row(v))(body_->layered.mesh.rest_positions.col(v));
-        }
+        skin_points_into(LinearBlend<Scalar>(), transforms, body_->layered.weights, body_->layered.mesh.rest_positions,
+                         prepared_joints_, sample.positions);
         gradient_skinning_.solve_into(bone_quaternions<Scalar>(transforms), sample.positions);
         sample.report = flesh_.solve_into(sample.positions, options_.newton);
         sample.num_inverted = volume_change(body_->layered.mesh, sample.positions).num_inverted;
@@ -99,7 +96,6 @@ private:
     KinematicTree tree_;
     SampleOptions<Scalar> options_;
     SequentialExecutor executor_;
-    LinearBlend<Scalar> policy_;
     PoissonReconstruction<Prism6, Scalar> poisson_;
     GradientSkinning<Prism6, Scalar> gradient_skinning_;
     LayeredFlesh<Scalar, SequentialExecutor, Cholesky> flesh_;

@@ -4,7 +4,7 @@
 /// independently of the library.
 #pragma once
 
-#include <softtissue/core/error.hpp>
+#include <support/refusal.hpp>
 
 #include <cstring>
 #include <filesystem>
@@ -52,16 +52,7 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& by
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// The text of the InvalidInput that `action` throws; empty if it throws none.
-template <class Action>
-std::string refusal(const Action& action) {
-    try {
-        action();
-    } catch (const softtissue::InvalidInput& error) {
-        return error.what();
-    }
-    return {};
-}
+using softtissue_test::refusal;
 
 inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

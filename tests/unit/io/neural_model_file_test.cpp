@@ -26,7 +26,7 @@ std::string bytes_of_file() {
 
 /// The message for the model's file after `change` to tensors and metadata.
 template <class Change>
-std::string refusal(const Change& change) {
+std::string refusal_after(const Change& change) {
     write_neural_model(path, random_limb_model<float>({}, 1.0));
     const SafetensorsFile file = read_safetensors(path);
     NamedTensors tensors = file.tensors();
@@ -44,7 +44,7 @@ std::string refusal(const Change& change) {
 }
 
 std::string with_metadata(const std::string& key, const std::string& value) {
-    return refusal([&](NamedTensors&, TensorMetadata& metadata) { metadata[key] = value; });
+    return refusal_after([&](NamedTensors&, TensorMetadata& metadata) { metadata[key] = value; });
 }
 
 StoredTensor& tensor(NamedTensors& tensors, const std::string& name) {
@@ -93,7 +93,7 @@ TEST_CASE("a decoder behind the network is folded into it") {
 }
 
 TEST_CASE("what is no model, or not this one, is refused with one message") {
-    CHECK(refusal([](NamedTensors&, TensorMetadata&) {}).empty());
+    CHECK(refusal_after([](NamedTensors&, TensorMetadata&) {}).empty());
     CHECK(with_metadata("softtissue_model", "2") == "softtissue_model is '2', expected '1'");
     CHECK(with_metadata("dtype", "F64") == "dtype is 'F64', expected 'F32'");
     CHECK(with_metadata("activation", "relu") == "activation is 'relu', expected 'gelu'");
@@ -106,22 +106,22 @@ TEST_CASE("what is no model, or not this one, is refused with one message") {
     CHECK(with_metadata("joint_names", "[1, 2]") == "joint_names is '[1, 2]', expected a list of texts");
     CHECK(with_metadata("joint_names", "[\"upper\"]") == "1 joint names for 2 parents");
     CHECK(with_metadata("shape_input", "false") == "tensor 'shape_space.components' is none of a model's");
-    CHECK(refusal([](NamedTensors&, TensorMetadata& metadata) { metadata.erase("connectivity"); }) ==
+    CHECK(refusal_after([](NamedTensors&, TensorMetadata& metadata) { metadata.erase("connectivity"); }) ==
           "metadata 'connectivity' is missing");
-    CHECK(refusal([](NamedTensors& tensors, TensorMetadata&) { tensors.pop_back(); }) ==
+    CHECK(refusal_after([](NamedTensors& tensors, TensorMetadata&) { tensors.pop_back(); }) ==
           "tensor 'shape_space.standard_deviations' is missing");
-    CHECK(refusal([](NamedTensors& tensors, TensorMetadata&) {
+    CHECK(refusal_after([](NamedTensors& tensors, TensorMetadata&) {
               tensors.emplace_back("extra", StoredTensor::from_vector(VectorX<float>::Zero(1)));
           }) == "tensor 'extra' is none of a model's");
-    CHECK(refusal([](NamedTensors& tensors, TensorMetadata&) {
+    CHECK(refusal_after([](NamedTensors& tensors, TensorMetadata&) {
               StoredTensor& weight = tensor(tensors, "net.3.bias");
               weight = StoredTensor::from_vector(weight.vector<double>());
           }) == "tensor 'net.3.bias': is of another type than the model's F32");
-    CHECK(refusal([](NamedTensors& tensors, TensorMetadata&) {
+    CHECK(refusal_after([](NamedTensors& tensors, TensorMetadata&) {
               StoredTensor& mean = tensor(tensors, "shape_space.mean");
               mean = StoredTensor::from_vector(VectorX<double>::Zero(897));
           }).find("shape space") != std::string::npos);
-    CHECK_FALSE(refusal([](NamedTensors& tensors, TensorMetadata&) {
+    CHECK_FALSE(refusal_after([](NamedTensors& tensors, TensorMetadata&) {
                     StoredTensor& bias = tensor(tensors, "net.0.bias");
                     VectorX<float> values = bias.vector<float>();
                     values(3) = std::numeric_limits<float>::infinity();

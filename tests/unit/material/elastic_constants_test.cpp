@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/material/elastic_constants.hpp>
 
+#include <support/refusal.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,21 +10,12 @@
 #include <string>
 
 using namespace softtissue;
+using softtissue_test::refusal;
 
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-template <class Call>
-std::string refusal(const Call& call) {
-    try {
-        call();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "";
-}
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 #include <softtissue/core/random.hpp>
 #include <softtissue/testing/taylor_rate.hpp>
 
+#include <support/refusal.hpp>
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -13,6 +15,7 @@
 #include <type_traits>
 
 using namespace softtissue;
+using softtissue_test::refusal;
 
 namespace {
 
@@ -47,16 +50,6 @@ PoseGoals<S> goals_of(const Body<S>& body, const Pose<S>& pose, S weight = S(1))
     goals.positions = {{3, x.col(3), weight}, {5, x.col(5), S(2)}, {0, x.col(0), S(1)}};
     goals.orientations = {{5, transforms[5].linear, S(0.3)}};
     return goals;
-}
-
-template <class Action>
-std::string refusal(const Action& action) {
-    try {
-        action();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/skinning/joint_map.hpp>
 
+#include <support/refusal.hpp>
+
 #include <doctest/doctest.h>
 
 #include <set>
@@ -8,6 +10,7 @@
 #include <vector>
 
 using namespace softtissue;
+using softtissue_test::refusal;
 
 namespace {
 
@@ -18,16 +21,6 @@ Skeleton<double> skeleton_of(const std::vector<std::string>& names) {
         parents[j] = std::int32_t(j) - 1;
     }
     return {names, KinematicTree(parents), Matrix3X<double>::Zero(3, Index(names.size()))};
-}
-
-template <class Action>
-std::string refusal(const Action& action) {
-    try {
-        action();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
 }
 
 const std::vector<std::string> cmu_names{

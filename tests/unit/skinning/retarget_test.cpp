@@ -3,6 +3,8 @@
 
 #include <softtissue/core/random.hpp>
 
+#include <support/refusal.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -19,6 +21,7 @@
 #endif
 
 using namespace softtissue;
+using softtissue_test::refusal;
 
 namespace {
 
@@ -67,16 +70,6 @@ Matrix3X<S> posed(const Skeleton<S>& skeleton, const Pose<S>& pose) {
 template <class S>
 Retargeter<S> make_retargeter(const Skeleton<S>& source, const Skeleton<S>& target, RetargetOptions<S> options = {}) {
     return Retargeter<S>(source, target, smpl_joint_map(MotionStyle::smpl, source), options);
-}
-
-template <class Action>
-std::string refusal(const Action& action) {
-    try {
-        action();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
 }
 
 }  // namespace

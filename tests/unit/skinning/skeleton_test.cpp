@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/skinning/skeleton.hpp>
 
+#include <support/refusal.hpp>
+
 #include <doctest/doctest.h>
 
 #include <limits>
 #include <string>
 
 using namespace softtissue;
+using softtissue_test::refusal;
 
 namespace {
 
 template <class S>
 Skeleton<S> arm() {
     return {{"shoulder", "elbow", "wrist"}, KinematicTree({-1, 0, 1}), Matrix3X<S>::Zero(3, 3)};
-}
-
-template <class Action>
-std::string refusal(const Action& action) {
-    try {
-        action();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
 }
 
 }  // namespace
