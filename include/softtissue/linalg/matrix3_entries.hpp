@@ -23,6 +23,12 @@ struct Matrix3Entries {
     S e[9];
 };
 
+/// f(0), ..., f(8): written out, since a loop over entries keeps compilers from taking them apart.
+template <class F>
+auto entrywise(const F& f) -> Matrix3Entries<decltype(f(0))> {
+    return {{f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7), f(8)}};
+}
+
 /// a b, row after row (b a, column after column).
 template <class S>
 Matrix3Entries<S> product(const Matrix3Entries<S>& a, const Matrix3Entries<S>& b) {
@@ -40,18 +46,19 @@ struct Matrix3Lanes {
 
     /// `count` columns of a 9 x n array that lie `stride` apart, and zeros for the other lanes.
     void load(const S* columns, Index stride, Index count) {
-        for (Index lane = 0; lane < lanes; ++lane) {
-            for (int i = 0; i < 9; ++i) {
-                e[i][lane] = lane < count ? columns[stride * lane + i] : S(0);
-            }
+        for (Index l = 0; l < count; ++l) {
+            const S* const column = columns + stride * l;
+            set_lane(l, entrywise([column](int i) { return column[i]; }));
+        }
+        for (Index l = count; l < lanes; ++l) {
+            set_lane(l, entrywise([](int) { return S(0); }));
         }
     }
 
     void store(S* columns, Index stride, Index count) const {
-        for (Index lane = 0; lane < count; ++lane) {
-            for (int i = 0; i < 9; ++i) {
-                columns[stride * lane + i] = e[i][lane];
-            }
+        for (Index l = 0; l < count; ++l) {
+            S* const column = columns + stride * l;
+            entrywise([&](int i) { return column[i] = e[i][l]; });
         }
     }
 
@@ -62,13 +69,11 @@ struct Matrix3Lanes {
     }
 
     Matrix3Entries<S> lane(Index l) const {
-        return {{e[0][l], e[1][l], e[2][l], e[3][l], e[4][l], e[5][l], e[6][l], e[7][l], e[8][l]}};
+        return entrywise([&](int i) { return e[i][l]; });
     }
 
     void set_lane(Index l, const Matrix3Entries<S>& M) {
-        for (int i = 0; i < 9; ++i) {
-            e[i][l] = M.e[i];
-        }
+        entrywise([&](int i) { return e[i][l] = M.e[i]; });
     }
 };
 

@@ -83,9 +83,7 @@ struct TraceSplit {
         B.e[0] = B.e[0] - t;
         B.e[4] = B.e[4] - t;
         B.e[8] = B.e[8] - t;
-        for (int i = 0; i < 9; ++i) {
-            B.e[i] = B.e[i] * scale;
-        }
+        B = entrywise([&](int i) { return S(B.e[i] * scale); });
         B2 = product(B, B);
         p = (B2.e[0] + B2.e[4] + B2.e[8]) * S(RealOf<S>(0.5));
         q = B.e[0] * (B.e[4] * B.e[8] - B.e[5] * B.e[7]) - B.e[1] * (B.e[3] * B.e[8] - B.e[5] * B.e[6]) +
@@ -115,11 +113,8 @@ struct ExponentialWithDerivative {
 
 template <class S>
 Matrix3Entries<S> exponential_of(const TraceSplit<S>& A, const CubicExponential<S>& r, const S& factor) {
-    Matrix3Entries<S> X;
     const S alpha = r.alpha * factor, beta = r.beta * factor, gamma = r.gamma * factor;
-    for (int i = 0; i < 9; ++i) {
-        X.e[i] = gamma * A.B2.e[i] + beta * A.B.e[i];
-    }
+    Matrix3Entries<S> X = entrywise([&](int i) { return S(gamma * A.B2.e[i] + beta * A.B.e[i]); });
     X.e[0] = X.e[0] + alpha;
     X.e[4] = X.e[4] + alpha;
     X.e[8] = X.e[8] + alpha;
@@ -141,10 +136,8 @@ Matrix3Entries<S> exponential_derivative_of(const TraceSplit<S>& A, const CubicE
     const S R = factor * (r.alpha_q * E1 + r.beta_q * EB + r.gamma_q * EB2);
     const S beta = factor * r.beta, gamma = factor * r.gamma;
     const Matrix3Entries<S> right = product(E, A.B), left = product(A.B, E);
-    Matrix3Entries<S> L;
-    for (int i = 0; i < 9; ++i) {
-        L.e[i] = beta * E.e[i] + gamma * (right.e[i] + left.e[i]) + P * A.B.e[i] + R * A.B2.e[i];
-    }
+    Matrix3Entries<S> L = entrywise(
+        [&](int i) { return S(beta * E.e[i] + gamma * (right.e[i] + left.e[i]) + P * A.B.e[i] + R * A.B2.e[i]); });
     // adj B = B^2 - p I, whose second part only changes the trace
     const S missing = (trace_of_product(X) - (L.e[0] + L.e[4] + L.e[8])) * S(RealOf<S>(1) / 3);
     L.e[0] = L.e[0] + missing;

@@ -29,24 +29,36 @@ using Matrix9X = Eigen::Matrix<S, 9, Eigen::Dynamic>;
 
 namespace detail {
 
-/// value[lane] = exp(Q[lane]), and the derivative there applied to E[lane] if there is an E.
-template <RealScalar S>
-void exponential_lanes(const Matrix3Lanes<S>& Q, const Matrix3Lanes<S>* E, Matrix3Lanes<S>& result) {
-    constexpr Index lanes = Matrix3Lanes<S>::lanes;
-    S norms[size_t(lanes)];
-    for (Index l = 0; l < lanes; ++l) {
+/// exp of every lane of Q, or with `E` the derivative of exp there applied to the lane of E, without squarings; and what
+/// tells which lanes need them. Flattened: a call would keep the loop from vectorising.
+template <RealScalar S, class... Directions>
+[[gnu::flatten]] void exponential_series_lanes(const Matrix3Lanes<S>& Q, S* norms, Matrix3Lanes<S>& result,
+                                               const Directions&... E) {
+    for (Index l = 0; l < Matrix3Lanes<S>::lanes; ++l) {
         const TraceSplit<S> A(Q.lane(l), S(1));
         norms[l] = quarter_row_norm(A.B);
         const CubicExponential<S> r = ExponentialSeries<S>::at(A.p, A.q);
         const S factor = branchless_exp(A.t);
         const Matrix3Entries<S> X = exponential_of(A, r, factor);
-        result.set_lane(l, E == nullptr ? X : exponential_derivative_of(A, r, factor, X, E->lane(l)));
+        if constexpr (sizeof...(E) == 0) {
+            result.set_lane(l, X);
+        } else {
+            result.set_lane(l, exponential_derivative_of(A, r, factor, X, E.lane(l)...));
+        }
     }
-    for (Index l = 0; l < lanes; ++l) {
+}
+
+template <RealScalar S, class... Directions>
+void exponential_lanes(const Matrix3Lanes<S>& Q, Matrix3Lanes<S>& result, const Directions&... E) {
+    S norms[size_t(Matrix3Lanes<S>::lanes)];
+    exponential_series_lanes(Q, norms, result, E...);
+    for (Index l = 0; l < Matrix3Lanes<S>::lanes; ++l) {
         if (norms[l] > ExponentialSeries<S>::largest_norm / 4) {
-            const ExponentialWithDerivative<S> squared =
-                squared_exponential(Q.lane(l), (E == nullptr ? Q : *E).lane(l));
-            result.set_lane(l, E == nullptr ? squared.value : squared.derivative);
+            if constexpr (sizeof...(E) == 0) {
+                result.set_lane(l, squared_exponential(Q.lane(l), Q.lane(l)).value);
+            } else {
+                result.set_lane(l, squared_exponential(Q.lane(l), E.lane(l)...).derivative);
+            }
         }
     }
 }
@@ -60,7 +72,7 @@ void matrix_exponentials_into(ConstRef<Matrix9X<S>> Q, Eigen::Ref<Matrix9X<S>> o
     for_each_lane_block(executor, Q.cols(), [&](Index first, Index count) {
         Matrix3Lanes<S> lanes, result;
         lanes.load(Q.col(first).data(), Q.outerStride(), count);
-        detail::exponential_lanes<S>(lanes, nullptr, result);
+        detail::exponential_lanes(lanes, result);
         result.store(out.col(first).data(), out.outerStride(), count);
     });
 }
@@ -76,7 +88,7 @@ void matrix_exponential_pullbacks_into(ConstRef<Matrix9X<S>> Q, ConstRef<Matrix9
         lanes.load(Q.col(first).data(), Q.outerStride(), count);
         gradients.load(G.col(first).data(), G.outerStride(), count);
         lanes.transpose();
-        detail::exponential_lanes<S>(lanes, &gradients, result);
+        detail::exponential_lanes(lanes, result, gradients);
         result.store(out.col(first).data(), out.outerStride(), count);
     });
 }

@@ -135,10 +135,7 @@ public:
             linear(k).forward_into(linear_parameters(parameters, k), input_of(k), y, executor);
             norm(k).forward_into(norm_parameters(parameters, k), y, y, scratch.deviations.head(batch), y);
             for (Index sample = 0; sample < batch; ++sample) {
-                S* const values = y.col(sample).data();
-                for (Index i = 0; i < y.rows(); ++i) {
-                    values[i] = A::at(values[i]).value;
-                }
+                activate(y.col(sample).data(), y.rows());
             }
         }
         const Index last = num_hidden();
@@ -157,13 +154,7 @@ public:
             linear(k).forward_into(linear_parameters(parameters, k), input_of(k, inputs, tape), y, executor);
             norm(k).forward_into(norm_parameters(parameters, k), y, hidden.normalized.leftCols(batch),
                                  hidden.inverse_deviations.head(batch), y);
-            S* const values = y.data();
-            S* const slopes = hidden.slopes.data();
-            for (Index i = 0; i < y.size(); ++i) {
-                const ActivationValue<S> activation = A::at(values[i]);
-                values[i] = activation.value;
-                slopes[i] = activation.slope;
-            }
+            activate(y.data(), hidden.slopes.data(), y.size());
         }
         const Index last = num_hidden();
         linear(last).forward_into(linear_parameters(parameters, last), input_of(last, inputs, tape), outputs, executor);
@@ -206,6 +197,20 @@ public:
     }
 
 private:
+    /// Flattened: a call would keep the loop from vectorising.
+    [[gnu::flatten]] static void activate(S* values, Index count) {
+        for (Index i = 0; i < count; ++i) {
+            values[i] = A::at(values[i]).value;
+        }
+    }
+    [[gnu::flatten]] static void activate(S* values, S* slopes, Index count) {
+        for (Index i = 0; i < count; ++i) {
+            const ActivationValue<S> activation = A::at(values[i]);
+            values[i] = activation.value;
+            slopes[i] = activation.slope;
+        }
+    }
+
     void name_tensors() {
         const auto add = [this](Index module, const char* name, std::vector<Index> shape) {
             tensors_.push_back({std::to_string(module) + name, std::move(shape), num_parameters_});
