@@ -71,6 +71,7 @@
 #include <softtissue/linalg/matrix_exponential.hpp>
 #include <softtissue/linalg/matrix_exponentials.hpp>
 #include <softtissue/linalg/matrix_logarithm.hpp>
+#include <softtissue/linalg/nine_number_lanes.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/principal_components.hpp>
 #include <softtissue/linalg/psd_filter.hpp>

@@ -2,7 +2,7 @@
 /// @file
 /// 3x3 matrices in plain arithmetic, one or sixteen at a time: compilers turn sixteen into lanes.
 ///
-/// What        Matrix3Entries: nine numbers and their product; Matrix3Lanes: sixteen matrices, entry by entry;
+/// What        Matrix3Entries: nine numbers, entrywise() and product(); Matrix3Lanes: sixteen matrices, entry by entry;
 ///             for_each_lane_block: a loop over the columns of a 9 x n array, sixteen at a time
 /// Shapes      nine entries row after row, or column after column, as long as all are alike
 /// Why         a loop over lanes whose body is straight arithmetic on Matrix3Entries vectorises; one over Eigen's does not
@@ -12,6 +12,7 @@
 
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/linalg/nine_number_lanes.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -46,6 +47,10 @@ struct Matrix3Lanes {
 
     /// `count` columns of a 9 x n array that lie `stride` apart, and zeros for the other lanes.
     void load(const S* columns, Index stride, Index count) {
+        if (count == lanes && stride == 9) {
+            columns_to_lanes(columns, e);
+            return;
+        }
         for (Index l = 0; l < count; ++l) {
             const S* const column = columns + stride * l;
             set_lane(l, entrywise([column](int i) { return column[i]; }));
@@ -56,6 +61,10 @@ struct Matrix3Lanes {
     }
 
     void store(S* columns, Index stride, Index count) const {
+        if (count == lanes && stride == 9) {
+            lanes_to_columns(e, columns);
+            return;
+        }
         for (Index l = 0; l < count; ++l) {
             S* const column = columns + stride * l;
             entrywise([&](int i) { return column[i] = e[i][l]; });

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include <softtissue/linalg/nine_number_lanes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+
+namespace nine_number_lanes_test {
+
+using namespace softtissue;
+
+TEST_CASE_TEMPLATE("every number goes to its lane, and back to its place", S, float, double) {
+    constexpr std::size_t n = 32;
+    S columns[9 * n], lanes[9][n], back[9 * n + 1];
+    for (std::size_t k = 0; k < 9 * n; ++k) {
+        columns[k] = S(k);
+    }
+    columns_to_lanes(columns, lanes);
+    for (std::size_t i = 0; i < 9; ++i) {
+        for (std::size_t l = 0; l < n; ++l) {
+            CHECK(lanes[i][l] == S(9 * l + i));
+        }
+    }
+    back[9 * n] = S(-1);
+    lanes_to_columns(lanes, back);
+    for (std::size_t k = 0; k < 9 * n; ++k) {
+        CHECK(back[k] == columns[k]);
+    }
+    CHECK(back[9 * n] == S(-1));
+}
+
+TEST_CASE("columns of any alignment") {
+    constexpr std::size_t n = 16;
+    float numbers[9 * n + 3], lanes[9][n];
+    for (std::size_t k = 0; k < 9 * n + 3; ++k) {
+        numbers[k] = float(k);
+    }
+    columns_to_lanes(numbers + 3, lanes);
+    CHECK(lanes[8][15] == 146.0F);
+    lanes_to_columns(lanes, numbers + 1);
+    for (std::size_t k = 0; k < 9 * n; ++k) {
+        CHECK(numbers[k + 1] == float(k + 3));
+    }
+    CHECK(numbers[0] == 0.0F);
+}
+
+}  // namespace nine_number_lanes_test
