@@ -129,13 +129,15 @@ void generate(const Settings& settings) {
     const nlohmann::ordered_json wanted = definition(body, clips, shapes, settings.data, options.samples);
     const SkeletalLayers<double> skeleton{{}, body.tree, body.joint_names};
     const BodyFunction maker = layered_bodies(body);
-    if (mpi.shard().index == 0 && !DatasetFolder::has_plan(settings.out)) {
-        SkeletalLayers<double> mean = skeleton;
-        mean.body = maker(VectorX<double>::Zero(shapes));
-        DatasetFolder::create(settings.out, wanted,
-                              make_dataset_plan(clips, shapes, settings.data, ThreadExecutor(settings.threads)), mean);
-    }
-    mpi.wait_for_all();
+    mpi.first_alone([&] {
+        if (!DatasetFolder::has_plan(settings.out)) {
+            SkeletalLayers<double> mean = skeleton;
+            mean.body = maker(VectorX<double>::Zero(shapes));
+            DatasetFolder::create(settings.out, wanted,
+                                  make_dataset_plan(clips, shapes, settings.data, ThreadExecutor(settings.threads)),
+                                  mean);
+        }
+    });
     const DatasetFolder folder(settings.out);
     folder.require_definition(wanted);
     const double begin = seconds();

@@ -10,8 +10,11 @@
 #endif
 
 #include <charconv>
+#include <chrono>
+#include <exception>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace examples {
 
@@ -57,11 +60,30 @@ public:
         return shard_;
     }
 
-    /// Returns when all ranks have come here.
-    void wait_for_all() const {
+    /// Rank 0 does it, and the others wait until it is done; where it throws, all ranks do.
+    template <class Action>
+    void first_alone(const Action& action) const {
+        std::exception_ptr error;
+        if (shard_.index == 0) {
+            try {
+                action();
+            } catch (...) {
+                error = std::current_exception();
+            }
+        }
 #ifdef SOFTTISSUE_HAS_MPI
-        MPI_Barrier(MPI_COMM_WORLD);
+        int failed = error != nullptr;
+        MPI_Request request;
+        MPI_Ibcast(&failed, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+        for (int done = 0; done == 0;) {  // a blocking wait would keep a core busy that rank 0 may need
+            MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+            std::this_thread::sleep_for(std::chrono::milliseconds(done == 0 ? 5 : 0));
+        }
+        softtissue::require(failed == 0 || error != nullptr, "rank 0 could not prepare the work; its message says why");
 #endif
+        if (error != nullptr) {
+            std::rethrow_exception(error);
+        }
     }
 
 private:
