@@ -21,13 +21,8 @@
 #include <concepts>
 #include <cstddef>
 #include <numbers>
-#include <type_traits>
 
 namespace softtissue {
-
-/// What may be mixed with a Dual without carrying derivatives.
-template <class T>
-concept PlainNumber = std::is_arithmetic_v<T>;
 
 /// A value and its N first derivatives; T is a real number or another Dual.
 template <class T, int N>

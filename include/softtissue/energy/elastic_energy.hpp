@@ -3,6 +3,7 @@
 /// The elastic energy of a mesh: one deformation gradient and one material point per cell.
 ///
 /// What        EnergyTerm over Element x MaterialField.
+/// Packs       as many cells at a time as a register has lanes; a cell's numbers do not depend on its neighbours in the pack
 /// Equation    E(d) = sum_c V_c psi_c(F_c),  F_c = F0_c + sum_i d_i g_i^T
 ///             F0 is the gradient of the shape that d is measured from: the identity for the rest shape, see strain_frame.hpp.
 /// Shapes      d, gradient 3 x vertices; Hessian 3x3 blocks (a, b) = V sum_kl dP_.k/dF_.l g_a[k] g_b[l]
@@ -18,12 +19,15 @@
 #include <softtissue/element/concepts.hpp>
 #include <softtissue/energy/concepts.hpp>
 #include <softtissue/energy/rest_operators.hpp>
+#include <softtissue/energy/rest_packs.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/material/concepts.hpp>
 #include <softtissue/material/field.hpp>
+#include <softtissue/material/packed.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 
-#include <type_traits>
+#include <array>
+#include <utility>
 
 namespace softtissue {
 
@@ -34,6 +38,7 @@ public:
     using Scalar = typename MaterialOf<Field>::Scalar;
     using CellElement = ElementType;
     using Mesh = CellMesh<ElementType, Scalar>;
+    using Rest = RestPacks<ElementType, Scalar>;
     static constexpr int num_nodes = ElementType::num_nodes;
 
     static_assert(RealScalar<Scalar>, "assembly and solvers need a material over float or double");
@@ -47,27 +52,18 @@ public:
 
     const Field& field() const { return field_; }
     Field& field() { return field_; }
-    const RestOperators<ElementType, Scalar>& rest() const { return rest_; }
     Index num_cells() const { return assembly_.num_stencils(); }
     Index num_vertices() const { return assembly_.num_vertices(); }
     const Connectivity<num_nodes>& cells() const { return assembly_.stencils(); }
 
-    /// Replaces the rest operators (rest-retargeted strain); the connectivity stays.
-    RestOperators<ElementType, Scalar>& mutable_rest() { return rest_; }
-
-    /// F0 per cell, 3 x 3 cells; empty means the identity.
-    Matrix3X<Scalar>& reference_gradients() { return reference_gradients_; }
+    /// Gradient operators, volumes and reference gradients F0, which a strain frame may replace; the connectivity stays.
+    const Rest& rest() const { return rest_; }
+    Rest& mutable_rest() { return rest_; }
 
     /// F of one cell.
     Matrix3<Scalar> deformation_gradient(const Matrix3X<Scalar>& d, Index cell) const {
-        Matrix3<Scalar> F = Matrix3<Scalar>::Identity();
-        if (reference_gradients_.cols() > 0) {
-            F = reference_gradients_.template middleCols<3>(3 * cell);
-        }
-        for (int i = 0; i < num_nodes; ++i) {
-            F.noalias() += d.col(cells()(i, cell)) * rest_.gradients.col(num_nodes * cell + i).transpose();
-        }
-        return F;
+        return deformation_gradient<Scalar>(Mesh::gather(d, cells().col(cell)), rest_.gradients(cell),
+                                            rest_.reference_gradient(cell));
     }
 
     /// Cells whose deformation gradient has det F <= 0.
@@ -81,64 +77,123 @@ public:
 
     template <Executor E>
     Scalar energy(const Matrix3X<Scalar>& d, const E& executor) {
-        return assembly_.sum_energy(executor, [&](Index c) {
-            return rest_.volumes(c) * field_.at(c).energy_density(deformation_gradient(d, c));
+        return assembly_.template sum_packed_energy<width>(executor, [&](Index pack, Scalar* slots) {
+            const Lanes psi = law(pack).energy_density(packed_deformation_gradient(d, pack));
+            Lanes(rest_.packed_volume(pack) * psi).store(slots);
         });
     }
 
     template <Executor E>
     void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor) {
-        assembly_.add_gradient(
+        assembly_.template add_packed_gradient<width>(
             executor,
-            [&](Index c) -> NodePositions<ElementType, Scalar> {
-                const Matrix3<Scalar> P = field_.at(c).first_piola(deformation_gradient(d, c));
-                return rest_.volumes(c) * P * rest_.gradients.template middleCols<num_nodes>(num_nodes * c);
+            [&](Index pack, Scalar* slots) {
+                const Matrix3<Lanes> P =
+                    law(pack).first_piola(packed_deformation_gradient(d, pack)) * rest_.packed_volume(pack);
+                const NodePositions<ElementType, Lanes> g = rest_.packed_gradients(pack);
+                std::array<Scalar, size_t(3 * num_nodes * width)> forces;
+                for (int i = 0; i < num_nodes; ++i) {
+                    for (int k = 0; k < 3; ++k) {
+                        const Lanes force = P(k, 0) * g(0, i) + P(k, 1) * g(1, i) + P(k, 2) * g(2, i);
+                        force.store(forces.data() + width * (3 * i + k));
+                    }
+                }
+                split_lanes<3 * num_nodes>(forces.data(), slots);
             },
             gradient);
     }
 
-    void add_neighbours(const PrescribedVertices& prescribed, std::vector<std::vector<std::int32_t>>& neighbours) const {
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
         assembly_.add_neighbours(prescribed, neighbours);
     }
 
-    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) { assembly_.bind(prescribed, pattern); }
+    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
+        assembly_.bind(prescribed, pattern);
+    }
 
     template <Executor E>
     void add_hessian(const Matrix3X<Scalar>& d, PsdFilter filter, BlockMatrix<Scalar>& hessian, const E& executor) {
-        assembly_.add_hessian(
+        assembly_.template add_packed_hessian<width>(
             executor,
-            [&](Index c, auto blocks) {
-                const Matrix9<Scalar> H =
-                    rest_.volumes(c) * projected_hessian(field_.at(c), deformation_gradient(d, c), filter);
-                contract_into(H, rest_.cell_gradients(c), blocks);
+            [&](Index pack, Scalar* slots) {
+                const Matrix9<Lanes> H = projected_hessian(law(pack), packed_deformation_gradient(d, pack), filter);
+                contract_into(H, rest_.packed_gradients(pack), rest_.packed_volume(pack), slots);
             },
             hessian);
     }
 
 private:
+    using Assembly = StencilAssembly<num_nodes, Scalar>;
+    using Lanes = typename Rest::Lanes;
+    static constexpr int width = Rest::width;
+
     static const Mesh& validated(const Mesh& mesh) {
         mesh.validate();
         return mesh;
     }
 
-    /// blocks(a, b) = sum_kl H_(.k)(.l) g_a[k] g_b[l]
-    template <class Blocks>
-    static void contract_into(const Matrix9<Scalar>& H, const NodePositions<ElementType, Scalar>& g, Blocks& blocks) {
+    /// F0 + sum_i d_i g_i^T, of a cell or of a pack of cells.
+    template <class T>
+    static Matrix3<T> deformation_gradient(const NodePositions<ElementType, T>& d,
+                                           const NodePositions<ElementType, T>& g, const Matrix3<T>& F0) {
+        Matrix3<T> F = F0;
+        for (int i = 0; i < num_nodes; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                F.col(j) += d.col(i) * g(j, i);
+            }
+        }
+        return F;
+    }
+
+    Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
+        return deformation_gradient<Lanes>(rest_.gather(d, cells(), pack), rest_.packed_gradients(pack),
+                                           rest_.packed_reference_gradient(pack));
+    }
+
+    /// The laws of a pack of cells.
+    auto law(Index pack) const {
+        return packed_law<width>([this, pack](int i) -> decltype(auto) { return field_.at(rest_.cell(pack, i)); });
+    }
+
+    /// blocks(a, b) = V sum_kl H_(.k)(.l) g_a[k] g_b[l] of every lane.
+    static void contract_into(const Matrix9<Lanes>& H, const NodePositions<ElementType, Lanes>& g, const Lanes& volume,
+                              Scalar* slots) {
+        std::array<Scalar, size_t(Assembly::hessian_slot * width)> blocks;
         for (int b = 0; b < num_nodes; ++b) {
-            const Eigen::Matrix<Scalar, 9, 3> T =
-                g(0, b) * H.template leftCols<3>() + g(1, b) * H.template middleCols<3>(3) + g(2, b) * H.template rightCols<3>();
+            Eigen::Matrix<Lanes, 9, 3> T;
+            for (int column = 0; column < 3; ++column) {
+                for (int row = 0; row < 9; ++row) {
+                    T(row, column) = volume * (g(0, b) * H(row, column) + g(1, b) * H(row, column + 3) +
+                                               g(2, b) * H(row, column + 6));
+                }
+            }
             for (int a = 0; a <= b; ++a) {
-                blocks.template middleCols<3>(3 * StencilAssembly<num_nodes, Scalar>::pair_index(a, b)) =
-                    g(0, a) * T.template topRows<3>() + g(1, a) * T.template middleRows<3>(3) +
-                    g(2, a) * T.template bottomRows<3>();
+                for (int column = 0; column < 3; ++column) {
+                    for (int row = 0; row < 3; ++row) {
+                        const Lanes entry =
+                            g(0, a) * T(row, column) + g(1, a) * T(row + 3, column) + g(2, a) * T(row + 6, column);
+                        entry.store(blocks.data() + width * (9 * Assembly::pair_index(a, b) + 3 * column + row));
+                    }
+                }
+            }
+        }
+        split_lanes<int(Assembly::hessian_slot)>(blocks.data(), slots);
+    }
+
+    /// From `count` packs to the numbers of each lane, one lane after the other.
+    template <int count>
+    static void split_lanes(const Scalar* packs, Scalar* slots) {
+        for (int i = 0; i < width; ++i) {
+            for (int k = 0; k < count; ++k) {
+                slots[i * count + k] = packs[k * width + i];
             }
         }
     }
 
     Field field_;
-    StencilAssembly<num_nodes, Scalar> assembly_;
-    RestOperators<ElementType, Scalar> rest_;
-    Matrix3X<Scalar> reference_gradients_;
+    Assembly assembly_;
+    Rest rest_;
 };
 
 }  // namespace softtissue

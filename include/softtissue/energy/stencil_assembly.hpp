@@ -4,8 +4,10 @@
 ///
 /// What        every stencil (a cell, a hinge, ...) of num_nodes vertices writes its gradient and Hessian into slots of its own;
 ///             a gather then adds the slots vertex by vertex in ascending stencil order: the same bits for every executor.
+///             Hessians go tile by tile: those of some hundred stencils are written, then added while they lie in the cache.
+/// Packs       N stencils at a time, evaluated together, written one after the other; the last pack is padded.
 /// Shapes      gradient slot 3 x num_nodes; Hessian slot: blocks (a, b), a <= b, 3x3 each, of a symmetric stencil Hessian.
-/// Memory      Scalar[3 num_nodes] per stencil; Scalar[9 num_nodes (num_nodes + 1) / 2] more from the first Hessian on.
+/// Memory      Scalar[3 num_nodes + 1] and int32[num_nodes^2 + 3 num_nodes] per stencil; half a MiB for the Hessians of a tile.
 /// Tests       tests/unit/energy/stencil_assembly_test.cpp
 #pragma once
 
@@ -15,7 +17,9 @@
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace softtissue {
@@ -26,13 +30,14 @@ public:
     using Scalar = S;
     static constexpr int num_nodes = num_nodes_;
     static constexpr int num_block_pairs = num_nodes * (num_nodes + 1) / 2;
+    static constexpr Index hessian_slot = 9 * num_block_pairs;
 
     using GradientSlot = Eigen::Matrix<Scalar, 3, num_nodes>;
 
     StencilAssembly(Connectivity<num_nodes> stencils, Index num_vertices)
         : stencils_(std::move(stencils)),
-          energy_slots_(stencils_.cols()),
-          gradient_slots_(3, num_nodes * stencils_.cols()) {
+          energy_slots_(padded(stencils_.cols())),
+          gradient_slots_(3, num_nodes * padded(stencils_.cols())) {
         incidence_offsets_.assign(size_t(num_vertices) + 1, 0);
         for (Index s = 0; s < num_stencils(); ++s) {
             for (int a = 0; a < num_nodes; ++a) {
@@ -58,63 +63,14 @@ public:
     /// Calls `energy_of(stencil)` for each stencil; returns the sum, added in stencil order.
     template <Executor E, class EnergyOf>
     Scalar sum_energy(const E& executor, const EnergyOf& energy_of) {
-        executor.for_each_range(num_stencils(), [&](Index begin, Index end) {
-            for (Index s = begin; s < end; ++s) {
-                energy_slots_(s) = energy_of(s);
-            }
-        });
-        return energy_slots_.sum();
+        return sum_packed_energy<1>(executor, [&](Index s, Scalar* slot) { *slot = energy_of(s); });
     }
 
     /// Calls `gradient_of(stencil) -> GradientSlot` for each stencil and adds the results to `gradient`, 3 x num_vertices.
     template <Executor E, class GradientOf>
     void add_gradient(const E& executor, const GradientOf& gradient_of, Matrix3X<Scalar>& gradient) {
-        executor.for_each_range(num_stencils(), [&](Index begin, Index end) {
-            for (Index s = begin; s < end; ++s) {
-                gradient_slots_.template middleCols<num_nodes>(num_nodes * s) = gradient_of(s);
-            }
-        });
-        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
-            for (Index v = begin; v < end; ++v) {
-                for (std::int32_t k = incidence_offsets_[size_t(v)]; k < incidence_offsets_[size_t(v) + 1]; ++k) {
-                    gradient.col(v) += gradient_slots_.col(incidences_[size_t(k)]);
-                }
-            }
-        });
-    }
-
-    /// Appends the free neighbours of every free vertex, for BlockPattern.
-    void add_neighbours(const PrescribedVertices& prescribed,
-                        std::vector<std::vector<std::int32_t>>& neighbours) const {
-        for (Index s = 0; s < num_stencils(); ++s) {
-            for (int b = 0; b < num_nodes; ++b) {
-                const std::int32_t column = prescribed.free_index(stencils_(b, s));
-                for (int a = 0; a < num_nodes && column != PrescribedVertices::prescribed; ++a) {
-                    const std::int32_t row = prescribed.free_index(stencils_(a, s));
-                    if (row != PrescribedVertices::prescribed) {
-                        neighbours[size_t(column)].push_back(row);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Looks up where every block goes; once per pattern, before add_hessian().
-    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
-        ranks_.resize(num_nodes, num_nodes * num_stencils());
-        for (Index s = 0; s < num_stencils(); ++s) {
-            for (int b = 0; b < num_nodes; ++b) {
-                const std::int32_t column = prescribed.free_index(stencils_(b, s));
-                for (int a = 0; a < num_nodes; ++a) {
-                    const std::int32_t row = prescribed.free_index(stencils_(a, s));
-                    const bool is_free =
-                        column != PrescribedVertices::prescribed && row != PrescribedVertices::prescribed;
-                    ranks_(a, num_nodes * s + b) = is_free ? pattern.rank(column, row) : PrescribedVertices::prescribed;
-                }
-            }
-        }
-        free_vertices_ = prescribed.free_vertices();
-        hessian_slots_.resize(3, 3 * num_block_pairs * num_stencils());
+        add_packed_gradient<1>(
+            executor, [&](Index s, Scalar* slot) { Eigen::Map<GradientSlot>{slot} = gradient_of(s); }, gradient);
     }
 
     /// Calls `hessian_of(stencil, blocks)` for each stencil, which fills `blocks` (3 x 3 num_block_pairs; block (a, b), a <= b,
@@ -135,39 +91,155 @@ public:
     /// of each stencil from begin to end.
     template <Executor E, class Fill>
     void add_hessian_by_ranges(const E& executor, const Fill& fill, BlockMatrix<Scalar>& hessian) {
-        executor.for_each_range(num_stencils(), [&](Index begin, Index end) {
-            fill(begin, end, [&](Index s) {
-                return hessian_slots_.template middleCols<3 * num_block_pairs>(3 * num_block_pairs * s);
-            });
-        });
-        executor.for_each_range(Index(free_vertices_.size()), [&](Index begin, Index end) {
-            for (Index j = begin; j < end; ++j) {
-                gather_column(j, hessian);
+        using Blocks = Eigen::Map<Eigen::Matrix<Scalar, 3, 3 * num_block_pairs>>;
+        add_tiles(
+            executor,
+            [&](Index first, Index count) {
+                executor.for_each_range(count, [&](Index begin, Index end) {
+                    fill(first + begin, first + end,
+                         [&](Index s) { return Blocks(hessian_slots_.data() + hessian_slot * (s - first)); });
+                });
+            },
+            hessian);
+    }
+
+    /// Calls `energies_of(pack, slots)`, which writes the energies of stencils N pack to N pack + N - 1; what it writes for
+    /// stencils beyond the last is ignored.
+    template <int N, Executor E, class EnergiesOf>
+    Scalar sum_packed_energy(const E& executor, const EnergiesOf& energies_of) {
+        fill_slots<N>(executor, 0, num_stencils(), energies_of, energy_slots_.data(), 1);
+        return energy_slots_.head(num_stencils()).sum();
+    }
+
+    /// The same with a GradientSlot for each stencil, one after the other.
+    template <int N, Executor E, class GradientsOf>
+    void add_packed_gradient(const E& executor, const GradientsOf& gradients_of, Matrix3X<Scalar>& gradient) {
+        fill_slots<N>(executor, 0, num_stencils(), gradients_of, gradient_slots_.data(), 3 * num_nodes);
+        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
+            for (Index v = begin; v < end; ++v) {
+                for (std::int32_t k = incidence_offsets_[size_t(v)]; k < incidence_offsets_[size_t(v) + 1]; ++k) {
+                    gradient.col(v) += gradient_slots_.col(incidences_[size_t(k)]);
+                }
             }
         });
+    }
+
+    /// The same with hessian_slot numbers for each stencil, the blocks of add_hessian(), column-major.
+    template <int N, Executor E, class HessiansOf>
+    void add_packed_hessian(const E& executor, const HessiansOf& hessians_of, BlockMatrix<Scalar>& hessian) {
+        static_assert(tile % N == 0);
+        add_tiles(
+            executor,
+            [&](Index first, Index count) {
+                fill_slots<N>(executor, first, count, hessians_of, hessian_slots_.data(), hessian_slot);
+            },
+            hessian);
+    }
+
+    /// Appends the free neighbours of every free vertex, for BlockPattern.
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
+        for (Index s = 0; s < num_stencils(); ++s) {
+            for (int b = 0; b < num_nodes; ++b) {
+                const std::int32_t column = prescribed.free_index(stencils_(b, s));
+                for (int a = 0; a < num_nodes && column != PrescribedVertices::prescribed; ++a) {
+                    const std::int32_t row = prescribed.free_index(stencils_(a, s));
+                    if (row != PrescribedVertices::prescribed) {
+                        neighbours[size_t(column)].push_back(row);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Looks up where every block goes; once per pattern, before add_hessian().
+    void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
+        const Index num_tiles = (num_stencils() + tile - 1) / tile;
+        std::vector<std::vector<Run>> runs_of_tile{size_t(num_tiles)};
+        ranks_.resize(num_nodes, Index(incidences_.size()));
+        for (Index j = 0; j < prescribed.num_free(); ++j) {
+            const size_t v = size_t(prescribed.free_vertices()[size_t(j)]);
+            for (std::int32_t k = incidence_offsets_[v]; k < incidence_offsets_[v + 1]; ++k) {
+                const Index s = incidences_[size_t(k)] / num_nodes;
+                for (int a = 0; a < num_nodes; ++a) {
+                    const std::int32_t row = prescribed.free_index(stencils_(a, s));
+                    ranks_(a, k) = row == PrescribedVertices::prescribed ? row : pattern.rank(j, row);
+                }
+                std::vector<Run>& runs = runs_of_tile[size_t(s / tile)];
+                if (runs.empty() || runs.back().column != j) {
+                    runs.push_back({static_cast<std::int32_t>(j), k, k});
+                }
+                ++runs.back().end;
+            }
+        }
+        runs_.clear();
+        tile_runs_.assign(1, 0);
+        for (const std::vector<Run>& runs : runs_of_tile) {
+            runs_.insert(runs_.end(), runs.begin(), runs.end());
+            tile_runs_.push_back(Index(runs_.size()));
+        }
+        hessian_slots_.resize(hessian_slot * std::min(tile, padded(num_stencils())));
     }
 
     /// Place of block (a, b), a <= b.
     static constexpr int pair_index(int a, int b) { return a + b * (b + 1) / 2; }
 
 private:
-    void gather_column(Index j, BlockMatrix<Scalar>& hessian) {
-        const size_t v = size_t(free_vertices_[size_t(j)]);
-        for (std::int32_t k = incidence_offsets_[v]; k < incidence_offsets_[v + 1]; ++k) {
+    /// The incidences of one column's vertex with the stencils of one tile.
+    struct Run {
+        std::int32_t column;
+        std::int32_t begin;
+        std::int32_t end;
+    };
+
+    /// Stencils whose Hessians are added before the next ones are evaluated: as many as stay in a core's cache.
+    static constexpr Index tile =
+        std::max<Index>(64, (Index(1) << 19) / Index(hessian_slot * sizeof(Scalar)) / 64 * 64);
+
+    /// Room for the last pack.
+    static constexpr Index padded(Index num_stencils) { return (num_stencils + 63) / 64 * 64; }
+
+    template <int N, Executor E, class Fill>
+    static void fill_slots(const E& executor, Index first, Index count, const Fill& fill, Scalar* slots,
+                           Index slot_size) {
+        executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
+            for (Index p = begin; p < end; ++p) {
+                fill(first / N + p, slots + N * p * slot_size);
+            }
+        });
+    }
+
+    /// `fill_tile(first, count)` fills the slots of a tile's stencils.
+    template <Executor E, class FillTile>
+    void add_tiles(const E& executor, const FillTile& fill_tile, BlockMatrix<Scalar>& hessian) {
+        for (Index t = 0; t + 1 < Index(tile_runs_.size()); ++t) {
+            const Index first = t * tile;
+            fill_tile(first, std::min(tile, num_stencils() - first));
+            const Index first_run = tile_runs_[size_t(t)];
+            executor.for_each_range(tile_runs_[size_t(t) + 1] - first_run, [&](Index begin, Index end) {
+                for (Index r = first_run + begin; r < first_run + end; ++r) {
+                    gather_run(runs_[size_t(r)], first, hessian);
+                }
+            });
+        }
+    }
+
+    void gather_run(const Run& run, Index first_stencil, BlockMatrix<Scalar>& hessian) const {
+        using Block = Eigen::Map<const Matrix3<Scalar>>;
+        for (std::int32_t k = run.begin; k < run.end; ++k) {
             const std::int32_t incidence = incidences_[size_t(k)];
-            const Index s = incidence / num_nodes;
+            const Index s = incidence / num_nodes - first_stencil;
             const int b = incidence % num_nodes;
+            const Scalar* const blocks = hessian_slots_.data() + hessian_slot * s;
             for (int a = 0; a < num_nodes; ++a) {
-                const std::int32_t rank = ranks_(a, incidence);
+                const std::int32_t rank = ranks_(a, k);
                 if (rank == PrescribedVertices::prescribed) {
                     continue;
                 }
-                const int pair = a <= b ? pair_index(a, b) : pair_index(b, a);
-                const auto stored = hessian_slots_.template middleCols<3>(3 * (num_block_pairs * s + pair));
                 if (a <= b) {
-                    hessian.add(j, rank, stored);
+                    hessian.add(run.column, rank, Block(blocks + 9 * pair_index(a, b)));
                 } else {
-                    hessian.add(j, rank, stored.transpose());
+                    hessian.add(run.column, rank, Block(blocks + 9 * pair_index(b, a)).transpose());
                 }
             }
         }
@@ -178,9 +250,10 @@ private:
     std::vector<std::int32_t> incidences_;  // num_nodes * stencil + node, ascending per vertex
     VectorX<Scalar> energy_slots_;
     Matrix3X<Scalar> gradient_slots_;
-    Matrix3X<Scalar> hessian_slots_;
-    Connectivity<num_nodes> ranks_;
-    std::vector<std::int32_t> free_vertices_;
+    VectorX<Scalar> hessian_slots_;  // of one tile
+    Connectivity<num_nodes> ranks_;  // per incidence
+    std::vector<Run> runs_;          // ascending tile, then column
+    std::vector<Index> tile_runs_;   // where the runs of each tile begin
 };
 
 }  // namespace softtissue

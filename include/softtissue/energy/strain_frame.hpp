@@ -20,6 +20,7 @@
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 
+#include <cmath>
 #include <concepts>
 
 namespace softtissue {
@@ -31,7 +32,8 @@ struct UnposedFrame {
 
     /// `skinned` has the posed shape p and its blended maps A; they are taken over.
     template <class Elastic, class Scalar>
-    static void apply(const typename Elastic::Mesh&, const Placement<Scalar>& skinned, Elastic&, Placement<Scalar>& placement) {
+    static void apply(const typename Elastic::Mesh&, const Placement<Scalar>& skinned, Elastic&,
+                      Placement<Scalar>& placement) {
         placement = skinned;
     }
 };
@@ -45,14 +47,9 @@ struct WorldFrame {
                       Placement<Scalar>& placement) {
         placement.origins = skinned.origins;
         placement.maps.resize(3, 0);
-        Matrix3X<Scalar>& F0 = elastic.reference_gradients();
-        F0.setZero(3, 3 * elastic.num_cells());
         for (Index c = 0; c < elastic.num_cells(); ++c) {
-            for (int i = 0; i < Elastic::num_nodes; ++i) {
-                F0.template middleCols<3>(3 * c).noalias() +=
-                    skinned.origins.col(elastic.cells()(i, c)) *
-                    elastic.rest().gradients.col(Elastic::num_nodes * c + i).transpose();
-            }
+            const auto p = Elastic::Mesh::gather(skinned.origins, elastic.cells().col(c));
+            elastic.mutable_rest().set_reference_gradient(c, p * elastic.rest().gradients(c).transpose());
         }
     }
 };
@@ -67,29 +64,22 @@ struct RestRetargetedFrame {
         placement.origins = skinned.origins;
         placement.maps.resize(3, 0);
         using E = typename Elastic::CellElement;
-        constexpr int num_nodes = Elastic::num_nodes;
-        Matrix3X<Scalar>& F0 = elastic.reference_gradients();
-        F0.resize(3, 3 * elastic.num_cells());
         for (Index c = 0; c < elastic.num_cells(); ++c) {
             const NodePositions<E, Scalar> p = mesh.gather(skinned.origins, mesh.cells.col(c));
             const Matrix3<Scalar> posing = p * E::gradient_operator(mesh.rest_nodes(c)).transpose();
-            elastic.mutable_rest().update_cell(mesh, skinned.origins, c);
-            elastic.mutable_rest().volumes(c) = std::abs(elastic.rest().volumes(c));
             const Matrix3<Scalar> R = polar_rotation(posing);
-            F0.template middleCols<3>(3 * c) = R;
-            elastic.mutable_rest().gradients.template middleCols<num_nodes>(num_nodes * c) =
-                (R.transpose() * elastic.rest().cell_gradients(c)).eval();
+            elastic.mutable_rest().set_cell(c, R.transpose() * E::gradient_operator(p), std::abs(E::rest_volume(p)));
+            elastic.mutable_rest().set_reference_gradient(c, R);
         }
     }
 };
 
 /// A policy as above, for elastic energies of type `Elastic`.
 template <class T, class Elastic>
-concept StrainFrame =
-    requires(const typename Elastic::Mesh& mesh, const Placement<typename Elastic::Scalar>& skinned, Elastic& elastic,
-             Placement<typename Elastic::Scalar>& placement) {
-        { T::is_unposed } -> std::convertible_to<bool>;
-        T::apply(mesh, skinned, elastic, placement);
-    };
+concept StrainFrame = requires(const typename Elastic::Mesh& mesh, const Placement<typename Elastic::Scalar>& skinned,
+                               Elastic& elastic, Placement<typename Elastic::Scalar>& placement) {
+    { T::is_unposed } -> std::convertible_to<bool>;
+    T::apply(mesh, skinned, elastic, placement);
+};
 
 }  // namespace softtissue

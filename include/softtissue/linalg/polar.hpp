@@ -15,6 +15,8 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/svd3.hpp>
 
 #include <algorithm>
@@ -23,25 +25,26 @@
 namespace softtissue {
 
 /// The proper rotation of a decomposed matrix.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Matrix3<Scalar> polar_rotation(const Svd3<Scalar>& svd) {
     return svd.U * svd.V.transpose();
 }
 
 /// The rotation nearest to F, det = +1.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Matrix3<Scalar> polar_rotation(const Matrix3<Scalar>& F) {
     return polar_rotation(svd3(F));
 }
 
 /// s_i + s_j, the stiffness of the rotation against turning in the plane (i, j), kept at or above epsilon.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Scalar twist_denominator(const Vector3<Scalar>& sigma, int i, int j) {
-    return std::max(sigma(i) + sigma(j), std::numeric_limits<Scalar>::epsilon());
+    using std::max;
+    return max(Scalar(sigma(i) + sigma(j)), Scalar(std::numeric_limits<RealOf<Scalar>>::epsilon()));
 }
 
 /// d vec(R) / d vec(F) of a decomposed matrix.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Matrix9<Scalar> drotation_dgradient(const Svd3<Scalar>& svd) {
     Matrix9<Scalar> derivative = Matrix9<Scalar>::Zero();
     for (int k = 0; k < 3; ++k) {
@@ -49,16 +52,24 @@ Matrix9<Scalar> drotation_dgradient(const Svd3<Scalar>& svd) {
         const int j = (k + 2) % 3;
         const Matrix3<Scalar> Q = svd.U.col(i) * svd.V.col(j).transpose() - svd.U.col(j) * svd.V.col(i).transpose();
         const Vector9<Scalar> q = vec(Q);
-        derivative.template selfadjointView<Eigen::Lower>().rankUpdate(q,
-                                                                       Scalar(1) / twist_denominator(svd.sigma, i, j));
+        const Scalar weight = Scalar(1) / twist_denominator(svd.sigma, i, j);
+        for (int column = 0; column < 9; ++column) {
+            const Scalar weighted = weight * q(column);
+            for (int row = column; row < 9; ++row) {
+                derivative(row, column) += weighted * q(row);
+            }
+        }
     }
-    const Matrix9<Scalar> lower = derivative;
-    derivative = lower.template selfadjointView<Eigen::Lower>();
+    for (int column = 1; column < 9; ++column) {
+        for (int row = 0; row < column; ++row) {
+            derivative(row, column) = derivative(column, row);
+        }
+    }
     return derivative;
 }
 
 /// d vec(R) / d vec(F).
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Matrix9<Scalar> drotation_dgradient(const Matrix3<Scalar>& F) {
     return drotation_dgradient(svd3(F));
 }

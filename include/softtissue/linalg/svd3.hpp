@@ -6,6 +6,7 @@
 ///             the sign of sigma_2 is the sign of det F
 /// Shapes      F, U, V: 3x3.  sigma: 3.
 /// Valid       every finite F: zero, repeated and subnormal singular values included.  Where F is not finite, all is NaN.
+///             Packs: a converged lane stands still while others go on, so that it never depends on them.
 /// Accuracy    U, V orthonormal and F reproduced to a few epsilon |F|; small singular values of column-scaled
 ///             matrices keep their relative accuracy, as one-sided Jacobi does
 /// Source      one-sided Jacobi: Hestenes 1958; sign convention: Irving, Teran, Fedkiw 2004, sec. 4
@@ -14,6 +15,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <Eigen/Core>
@@ -25,7 +27,7 @@
 namespace softtissue {
 
 /// F = U diag(sigma) V^T with proper rotations U, V.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 struct Svd3 {
     Matrix3<Scalar> U;
     Vector3<Scalar> sigma;
@@ -40,96 +42,145 @@ Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
     return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
 }
 
-/// A unit vector orthogonal to the unit vector `u`.
+/// A unit vector orthogonal to the unit vector `u`: its part across the axis that lies farthest from it.
 template <class Scalar>
 Vector3<Scalar> any_orthogonal(const Vector3<Scalar>& u) {
-    Index smallest = 0;
-    u.cwiseAbs().minCoeff(&smallest);
-    const Vector3<Scalar> axis = Vector3<Scalar>::Unit(smallest);
-    return cross(u, axis).normalized();
+    using std::abs;
+    using std::sqrt;
+    const Vector3<Scalar> size(abs(u(0)), abs(u(1)), abs(u(2)));
+    const auto is_x = (size(0) <= size(1)) & (size(0) <= size(2));
+    const auto is_y = size(1) <= size(2);
+    const Scalar zero(0), one(1);
+    const Vector3<Scalar> axis(select(is_x, one, zero), select(is_x, zero, select(is_y, one, zero)),
+                               select(is_x, zero, select(is_y, zero, one)));
+    const Vector3<Scalar> across = axis - u * u.dot(axis);
+    return across * Scalar(one / sqrt(across.dot(across)));
 }
 
-/// Rotates columns p and q of B (and of V alike) until they are orthogonal; false if they already were.
+/// Rotates columns p and q of B (and of V alike) until they are orthogonal; whether they were not.
 template <class Scalar>
-bool orthogonalise_columns(Matrix3<Scalar>& B, Matrix3<Scalar>& V, int p, int q) {
-    const Scalar alpha = B.col(p).squaredNorm();
-    const Scalar beta = B.col(q).squaredNorm();
+auto orthogonalise_columns(Matrix3<Scalar>& B, Matrix3<Scalar>& V, int p, int q) {
+    using std::abs;
+    using std::copysign;
+    using std::sqrt;
+    const Scalar alpha = B.col(p).dot(B.col(p));
+    const Scalar beta = B.col(q).dot(B.col(q));
     const Scalar gamma = B.col(p).dot(B.col(q));
     // Rounding alone leaves a cosine of up to 1.5 epsilon.
-    constexpr Scalar tolerance = Scalar(2) * std::numeric_limits<Scalar>::epsilon();
-    if (std::abs(gamma) <= tolerance * std::sqrt(alpha) * std::sqrt(beta)) {
-        return false;
+    constexpr RealOf<Scalar> inverse_tolerance = RealOf<Scalar>(0.5) / std::numeric_limits<RealOf<Scalar>>::epsilon();
+    const Scalar cosine = gamma * Scalar(inverse_tolerance);
+    const auto is_oblique = cosine * cosine > alpha * beta;
+    if (!any_of(is_oblique)) {
+        return is_oblique;
     }
-    const Scalar zeta = (beta - alpha) / (Scalar(2) * gamma);
-    const Scalar t = std::copysign(Scalar(1), zeta) / (std::abs(zeta) + std::sqrt(Scalar(1) + zeta * zeta));
-    const Scalar c = Scalar(1) / std::sqrt(Scalar(1) + t * t);
-    const Scalar s = c * t;
+    const Scalar one(1);
+    const Scalar zeta = (beta - alpha) / (gamma + gamma);
+    const Scalar t = copysign(one, zeta) / (abs(zeta) + sqrt(Scalar(one + zeta * zeta)));
+    const Scalar cosine_or_1 = select(is_oblique, Scalar(one / sqrt(Scalar(one + t * t))), one);
+    const Scalar sine_or_0 = select(is_oblique, Scalar(cosine_or_1 * t), Scalar(0));
     for (Matrix3<Scalar>* M : {&B, &V}) {
-        const Vector3<Scalar> m = M->col(p);
-        M->col(p) = c * m - s * M->col(q);
-        M->col(q) = s * m + c * M->col(q);
+        for (int i = 0; i < 3; ++i) {
+            const Scalar m = (*M)(i, p);
+            (*M)(i, p) = cosine_or_1 * m - sine_or_0 * (*M)(i, q);
+            (*M)(i, q) = sine_or_0 * m + cosine_or_1 * (*M)(i, q);
+        }
     }
-    return true;
+    return is_oblique;
 }
 
 /// Orders columns p and q by length, keeping the handedness of V.
 template <class Scalar>
 void sort_columns(Matrix3<Scalar>& B, Matrix3<Scalar>& V, int p, int q) {
-    if (B.col(p).squaredNorm() < B.col(q).squaredNorm()) {
-        for (Matrix3<Scalar>* M : {&B, &V}) {
-            const Vector3<Scalar> m = M->col(p);
-            M->col(p) = M->col(q);
-            M->col(q) = -m;
+    const auto is_shorter = B.col(p).dot(B.col(p)) < B.col(q).dot(B.col(q));
+    for (Matrix3<Scalar>* M : {&B, &V}) {
+        for (int i = 0; i < 3; ++i) {
+            const Scalar m = (*M)(i, p);
+            (*M)(i, p) = select(is_shorter, (*M)(i, q), m);
+            (*M)(i, q) = select(is_shorter, Scalar(-m), (*M)(i, q));
         }
     }
+}
+
+/// U and sigma of a matrix B = U diag(sigma) with orthogonal columns, the longest first: the first two columns of U are
+/// those of B normalised, the third completes the right-handed frame, which gives sigma_2 its sign.
+template <class Scalar>
+void split_lengths(const Matrix3<Scalar>& B, Svd3<Scalar>& result) {
+    using std::max;
+    using std::min;
+    using std::sqrt;
+    const Scalar zero(0), one(1);
+    const Scalar length = sqrt(Scalar(B.col(0).dot(B.col(0))));
+    const auto is_zero = length == zero;
+    const Scalar inverse = one / select(is_zero, one, length);
+    const Vector3<Scalar> u0(select(is_zero, one, Scalar(B(0, 0) * inverse)), B(1, 0) * inverse, B(2, 0) * inverse);
+    const Vector3<Scalar> b1 = B.col(1) - u0 * u0.dot(B.col(1));
+    const Scalar squared = b1.dot(b1);
+    const auto is_rank_one = squared < Scalar(std::numeric_limits<RealOf<Scalar>>::min());
+    const Scalar width = sqrt(select(is_rank_one, zero, squared));
+    Vector3<Scalar> u1 = b1 * Scalar(one / select(is_rank_one, one, width));
+    if (any_of(is_rank_one)) {
+        const Vector3<Scalar> other = any_orthogonal(u0);
+        for (int i = 0; i < 3; ++i) {
+            u1(i) = select(is_rank_one, other(i), u1(i));
+        }
+    }
+    result.U.col(0) = u0;
+    result.U.col(1) = u1;
+    result.U.col(2) = cross(u0, u1);
+    // Rounding must not break the order of equal values.
+    result.sigma(0) = length;
+    result.sigma(1) = min(width, length);
+    result.sigma(2) = max(Scalar(-result.sigma(1)), min(result.sigma(1), Scalar(result.U.col(2).dot(B.col(2)))));
 }
 
 }  // namespace detail
 
 /// The singular value decomposition of F with proper rotations; see the file comment.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Svd3<Scalar> svd3(const Matrix3<Scalar>& F) {
-    const Scalar scale = F.cwiseAbs().maxCoeff();
-    if (!F.allFinite()) {
-        const Matrix3<Scalar> nan = Matrix3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-        return {nan, nan.col(0), nan};
+    using std::abs;
+    using std::max;
+    using Real = RealOf<Scalar>;
+    const Scalar zero(0), one(1);
+    Scalar scale(0);
+    Scalar not_a_number(0);
+    for (int k = 0; k < 9; ++k) {
+        scale = max(scale, Scalar(abs(F.data()[k])));
+        not_a_number += F.data()[k] * zero;
     }
-    if (scale == Scalar(0)) {
-        return {Matrix3<Scalar>::Identity(), Vector3<Scalar>::Zero(), Matrix3<Scalar>::Identity()};
+    const auto is_finite = not_a_number == zero;
+    const auto is_usable = is_finite & (scale > zero);
+    const Scalar divisor = select(is_usable, scale, one);
+    Matrix3<Scalar> B;
+    for (int k = 0; k < 9; ++k) {
+        B.data()[k] = select(is_finite, F.data()[k], zero) / divisor;
     }
-    Matrix3<Scalar> B = F / scale;
-    Matrix3<Scalar> V = Matrix3<Scalar>::Identity();
+    Svd3<Scalar> result;
+    result.V = Matrix3<Scalar>::Identity();
     constexpr int max_sweeps = 12;  // convergence is quadratic; 4 to 6 are met
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
-        bool rotated = detail::orthogonalise_columns(B, V, 0, 1);
-        rotated = detail::orthogonalise_columns(B, V, 0, 2) || rotated;
-        rotated = detail::orthogonalise_columns(B, V, 1, 2) || rotated;
-        if (!rotated) {
+        const auto first = detail::orthogonalise_columns(B, result.V, 0, 1);
+        const auto second = detail::orthogonalise_columns(B, result.V, 0, 2);
+        const auto third = detail::orthogonalise_columns(B, result.V, 1, 2);
+        if (!any_of(first | second | third)) {
             break;
         }
     }
-    detail::sort_columns(B, V, 0, 1);
-    detail::sort_columns(B, V, 0, 2);
-    detail::sort_columns(B, V, 1, 2);
-
-    // B = U diag(sigma): the first two columns of U are those of B normalised, the third completes the
-    // right-handed frame, which gives sigma_2 its sign.
-    const Vector3<Scalar> u0 = B.col(0).normalized();
-    const Vector3<Scalar> b1 = B.col(1) - u0 * u0.dot(B.col(1));
-    const bool is_rank_one = b1.squaredNorm() < std::numeric_limits<Scalar>::min();
-    const Vector3<Scalar> u1 = is_rank_one ? detail::any_orthogonal(u0) : Vector3<Scalar>(b1.normalized());
-    Svd3<Scalar> result;
-    result.U.col(0) = u0;
-    result.U.col(1) = u1;
-    result.U.col(2) = detail::cross(u0, u1);
-    result.sigma.setZero();
-    result.sigma(0) = B.col(0).norm();
-    if (!is_rank_one) {  // rounding must not break the order of equal values
-        result.sigma(1) = std::min(b1.norm(), result.sigma(0));
-        result.sigma(2) = std::clamp(result.U.col(2).dot(B.col(2)), -result.sigma(1), result.sigma(1));
+    detail::sort_columns(B, result.V, 0, 1);
+    detail::sort_columns(B, result.V, 0, 2);
+    detail::sort_columns(B, result.V, 1, 2);
+    detail::split_lengths(B, result);
+    result.sigma *= divisor;
+    if (!all_of(is_finite)) {
+        const Scalar nan(std::numeric_limits<Real>::quiet_NaN());
+        for (int k = 0; k < 9; ++k) {
+            result.U.data()[k] = select(is_finite, result.U.data()[k], nan);
+            result.V.data()[k] = select(is_finite, result.V.data()[k], nan);
+        }
+        for (int k = 0; k < 3; ++k) {
+            result.sigma(k) = select(is_finite, result.sigma(k), nan);
+        }
     }
-    result.sigma *= scale;
-    result.V = V;
     return result;
 }
 

@@ -4,7 +4,7 @@
 ///
 /// What        H = V diag(values) V^T; values in no particular order, V orthogonal.
 /// Shapes      H, V: N x N, N up to about a dozen; only the lower triangle of H is read
-/// Valid       finite H. Small eigenvalues of graded matrices keep their relative accuracy better than by QR.
+/// Valid       finite H; packs, where a converged lane stands still while others go on. Small eigenvalues of graded matrices keep their relative accuracy better than by QR.
 /// Source      Golub & Van Loan 2013, sec. 8.5
 /// Why         plain loops: a fixed-size 9x9 eigensolver of Eigen costs eleven seconds of compile time, this one none
 /// Cost        5 to 8 sweeps of N (N - 1) / 2 rotations, 12 N flop each
@@ -12,6 +12,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <cmath>
@@ -19,7 +20,7 @@
 
 namespace softtissue {
 
-template <RealScalar Scalar, int N>
+template <RealLanes Scalar, int N>
 struct SymmetricEigen {
     Eigen::Matrix<Scalar, N, 1> values;
     Eigen::Matrix<Scalar, N, N> vectors;
@@ -27,18 +28,21 @@ struct SymmetricEigen {
 
 namespace detail {
 
-/// Makes H(p, q) zero: H <- G^T H G, V <- V G.
-template <class Scalar, int N>
-void jacobi_rotate(Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& V, int p, int q) {
+/// Makes H(p, q) zero where `is_off`: H <- G^T H G, V <- V G.
+template <class Scalar, class Mask, int N>
+void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& V, int p, int q) {
+    using std::abs;
+    using std::sqrt;
+    const Scalar zero(0), one(1);
     const Scalar theta = (H(q, q) - H(p, p)) / (Scalar(2) * H(p, q));
-    const Scalar t = (theta < Scalar(0) ? Scalar(-1) : Scalar(1)) /
-                     (std::abs(theta) + std::sqrt(theta * theta + Scalar(1)));
-    const Scalar c = Scalar(1) / std::sqrt(t * t + Scalar(1));
+    const Scalar tangent = select(theta < zero, Scalar(-one), one) / (abs(theta) + sqrt(Scalar(theta * theta + one)));
+    const Scalar t = select(is_off, tangent, zero);
+    const Scalar c = one / sqrt(Scalar(t * t + one));
     const Scalar s = t * c;
     const Scalar shift = t * H(p, q);
     H(p, p) -= shift;
     H(q, q) += shift;
-    H(p, q) = H(q, p) = Scalar(0);
+    H(p, q) = H(q, p) = select(is_off, zero, H(p, q));
     for (int i = 0; i < N; ++i) {
         if (i != p && i != q) {
             const Scalar hp = H(i, p);
@@ -55,7 +59,7 @@ void jacobi_rotate(Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& 
 
 }  // namespace detail
 
-template <RealScalar Scalar, int N>
+template <RealLanes Scalar, int N>
 SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
     constexpr int max_sweeps = 30;  // quadratic convergence: eight are enough, the rest is for denormals
     Eigen::Matrix<Scalar, N, N> H;
@@ -66,17 +70,21 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
             result.vectors(i, j) = i == j ? Scalar(1) : Scalar(0);
         }
     }
-    const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+    using std::abs;
+    using std::sqrt;
+    using Limits = std::numeric_limits<RealOf<Scalar>>;
+    // below half an ulp of both diagonal entries a rotation changes nothing
+    const Scalar threshold(RealOf<Scalar>(0.25) * Limits::epsilon());
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool is_diagonal = true;
         for (int p = 0; p < N; ++p) {
             for (int q = p + 1; q < N; ++q) {
-                const Scalar off = std::abs(H(p, q));
-                // below half an ulp of both diagonal entries a rotation changes nothing
-                if (off > Scalar(0.25) * epsilon * std::sqrt(std::abs(H(p, p))) * std::sqrt(std::abs(H(q, q))) &&
-                    off > std::numeric_limits<Scalar>::min()) {
+                const Scalar off = abs(H(p, q));
+                const Scalar size = sqrt(Scalar(abs(H(p, p)))) * sqrt(Scalar(abs(H(q, q))));
+                const auto is_off = (off > threshold * size) & (off > Scalar(Limits::min()));
+                if (any_of(is_off)) {
                     is_diagonal = false;
-                    detail::jacobi_rotate(H, result.vectors, p, q);
+                    detail::jacobi_rotate(is_off, H, result.vectors, p, q);
                 }
             }
         }

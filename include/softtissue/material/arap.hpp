@@ -20,6 +20,7 @@
 #include <softtissue/material/concepts.hpp>
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -29,7 +30,7 @@
 
 namespace softtissue {
 
-template <RealScalar ScalarType>
+template <RealLanes ScalarType>
 class Arap {
 public:
     using Scalar = ScalarType;
@@ -42,9 +43,22 @@ public:
         require_positive_modulus(stiffness_, "stiffness");
     }
 
+    /// For data that was checked before: nothing is.
+    static Arap unchecked(const Parameters& parameters) { return Arap(parameters, Unchecked{}); }
+
+    /// N laws side by side, law(i) in lane i.
+    template <int N, class Law>
+    static Arap<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
+        return Arap<Pack<Scalar, N>>::unchecked(
+            {.stiffness = Pack<Scalar, N>::from_lanes([&](int i) { return law(i).stiffness_; })});
+    }
+
     Parameters parameters() const { return {.stiffness = stiffness_}; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const { return stiffness_ * (F - polar_rotation(F)).squaredNorm(); }
+    Scalar energy_density(const Matrix3<Scalar>& F) const {
+        const Matrix3<Scalar> strain = F - polar_rotation(F);
+        return stiffness_ * strain.squaredNorm();
+    }
 
     Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
         return Scalar(2) * stiffness_ * (F - polar_rotation(F));
@@ -70,6 +84,9 @@ public:
     }
 
 private:
+    struct Unchecked {};
+    Arap(const Parameters& parameters, Unchecked) : stiffness_(parameters.stiffness) {}
+
     Scalar stiffness_;
 };
 

@@ -18,6 +18,7 @@
 
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -51,6 +52,13 @@ public:
     /// The law of (E, nu) in the frame `rotation`.
     static CorotatedLinear from_young_poisson(const YoungPoisson<Scalar>& constants, const Matrix3<Scalar>& rotation) {
         return CorotatedLinear(lame_parameters(constants), rotation);
+    }
+
+    /// N laws side by side, law(i) in lane i.
+    template <int N, class Law>
+    static CorotatedLinear<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
+        return CorotatedLinear<Pack<Scalar, N>>::unchecked(packed_lame<N>([&](int i) { return law(i).lame_; }),
+                                                           packed_matrix<N>([&](int i) { return law(i).rotation_; }));
     }
 
     Parameters parameters() const { return lame_; }

@@ -18,6 +18,7 @@
 #include <softtissue/material/concepts.hpp>
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -27,7 +28,7 @@
 
 namespace softtissue {
 
-template <RealScalar ScalarType>
+template <RealLanes ScalarType>
 class CorotatedLinearPolar {
 public:
     using Scalar = ScalarType;
@@ -40,6 +41,19 @@ public:
     /// The law of (E, nu).
     static CorotatedLinearPolar from_young_poisson(const YoungPoisson<Scalar>& constants) {
         return CorotatedLinearPolar(lame_parameters(constants));
+    }
+
+    /// For data that was checked before: nothing is.
+    static CorotatedLinearPolar unchecked(const Parameters& parameters) {
+        CorotatedLinearPolar result;
+        result.lame_ = parameters;
+        return result;
+    }
+
+    /// N laws side by side, law(i) in lane i.
+    template <int N, class Law>
+    static CorotatedLinearPolar<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
+        return CorotatedLinearPolar<Pack<Scalar, N>>::unchecked(packed_lame<N>([&](int i) { return law(i).lame_; }));
     }
 
     Parameters parameters() const { return lame_; }
@@ -78,6 +92,8 @@ public:
     }
 
 private:
+    CorotatedLinearPolar() = default;
+
     /// tr(R^T F - I).
     static Scalar strain_trace(const Matrix3<Scalar>& F, const Matrix3<Scalar>& R) {
         return F.cwiseProduct(R).sum() - Scalar(3);

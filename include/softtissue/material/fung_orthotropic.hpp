@@ -26,6 +26,8 @@
 
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -61,7 +63,7 @@ struct FungOrthotropicCoefficients {
     Scalar lambda;        ///< [Pa]
     Matrix3<Scalar> tau;  ///< symmetric, entries in (0, 1]
     Scalar eta;
-    RealOf<Scalar> max_exponent;
+    Scalar max_exponent;
 };
 
 /// The coefficients of `parameters`; refuses what the file comment lists. `where...` precedes the names in the message.
@@ -85,7 +87,7 @@ FungOrthotropicCoefficients<Scalar> fung_coefficients(const FungOrthotropicParam
     result.mu = lame.mu;
     result.lambda = lame.lambda;
     result.eta = parameters.exponent;
-    result.max_exponent = max_exponent;
+    result.max_exponent = Scalar(max_exponent);
     // The larger of any two different diagonal weights is 1, that of the two tangential ones their own.
     const Scalar tangential = parameters.tangential_modulus / Y;
     result.tau.setConstant(tangential);
@@ -112,6 +114,19 @@ public:
     /// For data that was checked before: nothing is.
     FungOrthotropic(const Coefficients& coefficients, const Matrix3<Scalar>& basis)
         : coefficients_(coefficients), basis_(basis) {}
+
+    /// N laws side by side, law(i) in lane i.
+    template <int N, class Law>
+    static FungOrthotropic<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
+        using Lanes = Pack<Scalar, N>;
+        const FungOrthotropicCoefficients<Lanes> coefficients{
+            .mu = Lanes::from_lanes([&](int i) { return law(i).coefficients_.mu; }),
+            .lambda = Lanes::from_lanes([&](int i) { return law(i).coefficients_.lambda; }),
+            .tau = packed_matrix<N>([&](int i) { return law(i).coefficients_.tau; }),
+            .eta = Lanes::from_lanes([&](int i) { return law(i).coefficients_.eta; }),
+            .max_exponent = Lanes::from_lanes([&](int i) { return law(i).coefficients_.max_exponent; })};
+        return {coefficients, packed_matrix<N>([&](int i) { return law(i).basis_; })};
+    }
 
     const Coefficients& coefficients() const { return coefficients_; }
     const Matrix3<Scalar>& basis() const { return basis_; }
@@ -167,7 +182,7 @@ public:
         return H;
     }
 
-    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealScalar<Scalar> {
+    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealLanes<Scalar> {
         return filtered(hessian(F), filter);
     }
 
@@ -187,7 +202,7 @@ private:
 
     Exponent exponent(const Matrix3<Scalar>& Eb) const {
         const Scalar x = coefficients_.eta * coefficients_.tau.cwiseProduct(Eb.cwiseProduct(Eb)).sum();
-        const Scalar within = value_of(x) < coefficients_.max_exponent ? x : Scalar(coefficients_.max_exponent);
+        const Scalar within = select(x < coefficients_.max_exponent, x, coefficients_.max_exponent);
         return {within, x - within};
     }
 

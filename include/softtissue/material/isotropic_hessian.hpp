@@ -31,7 +31,7 @@ struct IsotropicSpectrum {
 };
 
 /// The spectrum with every negative eigenvalue filtered.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 IsotropicSpectrum<Scalar> filtered(const IsotropicSpectrum<Scalar>& spectrum, PsdFilter filter) {
     IsotropicSpectrum<Scalar> result;
     result.A = filtered(spectrum.A, filter);
@@ -43,7 +43,7 @@ IsotropicSpectrum<Scalar> filtered(const IsotropicSpectrum<Scalar>& spectrum, Ps
 }
 
 /// The Hessian by F of the energy whose spectrum at the singular values of F is `spectrum`.
-template <RealScalar Scalar>
+template <RealLanes Scalar>
 Matrix9<Scalar> isotropic_hessian(const Svd3<Scalar>& svd, const IsotropicSpectrum<Scalar>& spectrum) {
     // In the frame of the singular vectors entry (a, b) couples with itself (K) and with (b, a) (L), and the
     // diagonal entries couple among each other (A). The frame is turned back by 3x3 blocks: U M U^T.
@@ -72,8 +72,11 @@ Matrix9<Scalar> isotropic_hessian(const Svd3<Scalar>& svd, const IsotropicSpectr
             H.template block<3, 3>(3 * j, 3 * l) = svd.U * M * svd.U.transpose();
         }
     }
-    const Matrix9<Scalar> lower = H;
-    H = lower.template selfadjointView<Eigen::Lower>();
+    for (int column = 1; column < 9; ++column) {
+        for (int row = 0; row < column; ++row) {
+            H(row, column) = H(column, row);
+        }
+    }
     return H;
 }
 

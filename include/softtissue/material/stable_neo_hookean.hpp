@@ -20,6 +20,7 @@
 #include <softtissue/material/concepts.hpp>
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -57,6 +58,22 @@ public:
         return StableNeoHookean({.mu = lame.mu, .lambda = lame.lambda});
     }
 
+    /// For data that was checked before: nothing is.
+    static StableNeoHookean unchecked(const Parameters& parameters) {
+        StableNeoHookean result;
+        result.mu_ = parameters.mu;
+        result.lambda_ = parameters.lambda;
+        return result;
+    }
+
+    /// N laws side by side, law(i) in lane i.
+    template <int N, class Law>
+    static StableNeoHookean<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
+        using Lanes = Pack<Scalar, N>;
+        return StableNeoHookean<Lanes>::unchecked({.mu = Lanes::from_lanes([&](int i) { return law(i).mu_; }),
+                                                   .lambda = Lanes::from_lanes([&](int i) { return law(i).lambda_; })});
+    }
+
     Parameters parameters() const { return {.mu = mu_, .lambda = lambda_}; }
 
     Scalar energy_density(const Matrix3<Scalar>& F) const {
@@ -84,7 +101,7 @@ public:
         return H;
     }
 
-    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealScalar<Scalar> {
+    Matrix9<Scalar> projected_hessian(const Matrix3<Scalar>& F, PsdFilter filter) const requires RealLanes<Scalar> {
         if (filter == PsdFilter::none) {
             return hessian(F);
         }
@@ -110,6 +127,8 @@ public:
     }
 
 private:
+    StableNeoHookean() = default;
+
     /// lambda (J - alpha), written so that rest is free of stress to the last bit.
     Scalar volume_stress(const Scalar& J) const { return lambda_ * (J - Scalar(1)) - mu_; }
 

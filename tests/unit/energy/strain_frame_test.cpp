@@ -121,7 +121,7 @@ TEST_CASE_TEMPLATE("retargeted: F is the gradient of x on the posed shape times 
         const Matrix3<double> R =
             polar_rotation(Matrix3<double>(p * E::gradient_operator(body.mesh.rest_nodes(c)).transpose()));
         CHECK((elastic.deformation_gradient(body.d, c) - on_posed * R).norm() < 1e-12);
-        CHECK(elastic.rest().volumes(c) == doctest::Approx(std::abs(E::rest_volume(p))).epsilon(1e-12));
+        CHECK(elastic.rest().volume(c) == doctest::Approx(std::abs(E::rest_volume(p))).epsilon(1e-12));
         farthest_rotation = std::max(farthest_rotation, (R - Matrix3<double>::Identity()).norm());
     }
     CHECK(farthest_rotation > 0.3);

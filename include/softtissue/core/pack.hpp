@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Several real numbers side by side: one number for formulas, one SIMD register for the machine.
+///
+/// What        Pack<T, N>: arithmetic, comparisons that give masks, select(); usable as an Eigen scalar
+/// Equation    every operation acts lane by lane, (a + b)[i] = a[i] + b[i]: a lane never depends on the others
+/// Width       natural_lanes<T> of the target: 16 floats or 8 doubles with AVX-512, 8 or 4 with AVX, 4 or 2 with SSE2 and NEON,
+///             one otherwise. Wider packs than the target has registers for are plain arrays: right, but not fast. No flag is
+///             exported: compile with -march=native (or the like) for the machine that runs the program, everything alike.
+/// Branching   a comparison gives a PackMask; `&`, `|`, `!` combine masks, select(mask, a, b) chooses, any_of() and all_of()
+///             ask. There is no plain value: FieldScalar, RealLanes, not HasPlainValue.
+/// Needs       the vector extensions of gcc and clang for speed; arrays elsewhere
+/// Tests       tests/unit/core/pack_test.cpp
+#pragma once
+
+#include <softtissue/core/scalar.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace softtissue {
+
+namespace detail {
+
+#if !defined(__GNUC__)
+inline constexpr int register_bytes = 0;
+#elif defined(__AVX512F__) && defined(__AVX512DQ__)
+inline constexpr int register_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int register_bytes = 32;
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+inline constexpr int register_bytes = 16;
+#else
+inline constexpr int register_bytes = 0;
+#endif
+
+template <class T, int N>
+inline constexpr bool fits_register = N > 1 && (N & (N - 1)) == 0 && N* int(sizeof(T)) <= register_bytes &&
+                                      (std::same_as<T, float> || std::same_as<T, double>);
+
+template <class T, int N, bool is_vector>
+struct LaneStorage {
+    using Values = std::array<T, std::size_t(N)>;
+    using Mask = std::array<bool, std::size_t(N)>;
+};
+
+#if defined(__GNUC__)
+template <class T, int N>
+struct LaneStorage<T, N, true> {
+    typedef T Values __attribute__((vector_size(std::size_t(N) * sizeof(T))));
+    using Mask = decltype(std::declval<Values>() < std::declval<Values>());
+};
+#endif
+
+}  // namespace detail
+
+/// How many numbers of type T one register of the target holds.
+template <RealScalar T>
+inline constexpr int natural_lanes = detail::fits_register<T, detail::register_bytes / int(sizeof(T))>
+                                         ? detail::register_bytes / int(sizeof(T))
+                                         : 1;
+
+/// N truth values.
+template <RealScalar T, int N>
+struct PackMask {
+    static constexpr bool is_vector = detail::fits_register<T, N>;
+    typename detail::LaneStorage<T, N, is_vector>::Mask lanes;
+
+    bool operator[](int i) const { return lanes[std::size_t(i)] != 0; }
+
+    friend PackMask operator&(const PackMask& a, const PackMask& b) {
+        return map([](const auto& x, const auto& y) { return x & y; }, a, b);
+    }
+    friend PackMask operator|(const PackMask& a, const PackMask& b) {
+        return map([](const auto& x, const auto& y) { return x | y; }, a, b);
+    }
+    friend PackMask operator!(const PackMask& a) {
+        return map([](const auto& x) { return x == 0; }, a);
+    }
+
+    friend bool any_of(const PackMask& a) {
+        if constexpr (is_vector) {
+            const auto words = std::bit_cast<std::array<std::uint64_t, sizeof(a.lanes) / 8>>(a.lanes);
+            std::uint64_t any = 0;
+            for (const std::uint64_t word : words) {
+                any |= word;
+            }
+            return any != 0;
+        } else {
+            bool any = false;
+            for (const bool lane : a.lanes) {
+                any |= lane;
+            }
+            return any;
+        }
+    }
+    friend bool all_of(const PackMask& a) { return !any_of(!a); }
+
+    /// f of the registers, or of each lane.
+    template <class F, class... Operands>
+    [[gnu::always_inline]] static inline PackMask map(const F& f, const Operands&... operands) {
+        PackMask result;
+        if constexpr (is_vector) {
+            result.lanes = f(operands.lanes...);
+        } else {
+            for (std::size_t i = 0; i < std::size_t(N); ++i) {
+                result.lanes[i] = f(operands.lanes[i]...) != 0;
+            }
+        }
+        return result;
+    }
+};
+
+/// N numbers of type T; see the file comment.
+template <RealScalar T, int N>
+struct Pack {
+    static_assert(N > 0, "a pack has at least one lane");
+    static constexpr bool is_vector = detail::fits_register<T, N>;
+    using Mask = PackMask<T, N>;
+    using Lanes = typename detail::LaneStorage<T, N, is_vector>::Values;
+
+    Lanes lanes;
+
+    /// Uninitialised like a plain number.
+    Pack() = default;
+
+    /// The same number in every lane; implicit, so that `S x = 1` and `2 * F` read as for a plain number.
+    template <PlainNumber A>
+    [[gnu::always_inline]] inline Pack(A number) {
+        if constexpr (is_vector) {
+            lanes = static_cast<T>(number) - Lanes{};  // keeps the sign of -0
+        } else {
+            lanes.fill(static_cast<T>(number));
+        }
+    }
+
+    /// N numbers in memory, of any alignment.
+    [[gnu::always_inline]] static inline Pack load(const T* numbers) {
+        Pack result;
+        std::memcpy(&result.lanes, numbers, sizeof(T) * std::size_t(N));
+        return result;
+    }
+    [[gnu::always_inline]] inline void store(T* numbers) const {
+        std::memcpy(numbers, &lanes, sizeof(T) * std::size_t(N));
+    }
+
+    /// lane_value(i) in lane i.
+    template <class F>
+    [[gnu::always_inline]] static inline Pack from_lanes(const F& lane_value) {
+        std::array<T, std::size_t(N)> numbers;
+        for (int i = 0; i < N; ++i) {
+            numbers[std::size_t(i)] = lane_value(i);
+        }
+        return load(numbers.data());
+    }
+
+    T operator[](int i) const { return lanes[std::size_t(i)]; }
+
+    Pack& operator+=(const Pack& b) { return *this = *this + b; }
+    Pack& operator-=(const Pack& b) { return *this = *this - b; }
+    Pack& operator*=(const Pack& b) { return *this = *this * b; }
+    Pack& operator/=(const Pack& b) { return *this = *this / b; }
+
+    friend Pack operator+(const Pack& a) { return a; }
+    friend Pack operator-(const Pack& a) {
+        return map([](const auto& x) { return -x; }, a);
+    }
+    friend Pack operator+(const Pack& a, const Pack& b) {
+        return map([](const auto& x, const auto& y) { return x + y; }, a, b);
+    }
+    friend Pack operator-(const Pack& a, const Pack& b) {
+        return map([](const auto& x, const auto& y) { return x - y; }, a, b);
+    }
+    friend Pack operator*(const Pack& a, const Pack& b) {
+        return map([](const auto& x, const auto& y) { return x * y; }, a, b);
+    }
+    friend Pack operator/(const Pack& a, const Pack& b) {
+        return map([](const auto& x, const auto& y) { return x / y; }, a, b);
+    }
+
+    friend Mask operator<(const Pack& a, const Pack& b) {
+        return Mask::map([](const auto& x, const auto& y) { return x < y; }, a, b);
+    }
+    friend Mask operator<=(const Pack& a, const Pack& b) {
+        return Mask::map([](const auto& x, const auto& y) { return x <= y; }, a, b);
+    }
+    friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+    friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
+    friend Mask operator==(const Pack& a, const Pack& b) {
+        return Mask::map([](const auto& x, const auto& y) { return x == y; }, a, b);
+    }
+    friend Mask operator!=(const Pack& a, const Pack& b) {
+        return Mask::map([](const auto& x, const auto& y) { return x != y; }, a, b);
+    }
+
+    /// a where the mask holds, b elsewhere.
+    friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
+        Pack result;
+        if constexpr (is_vector) {
+            result.lanes = mask.lanes ? a.lanes : b.lanes;
+        } else {
+            for (std::size_t i = 0; i < std::size_t(N); ++i) {
+                result.lanes[i] = mask.lanes[i] ? a.lanes[i] : b.lanes[i];
+            }
+        }
+        return result;
+    }
+
+    /// f of the registers, or of each lane.
+    template <class F, class... Operands>
+    [[gnu::always_inline]] static inline Pack map(const F& f, const Operands&... operands) {
+        Pack result;
+        if constexpr (is_vector) {
+            result.lanes = f(operands.lanes...);
+        } else {
+            for (std::size_t i = 0; i < std::size_t(N); ++i) {
+                result.lanes[i] = f(operands.lanes[i]...);
+            }
+        }
+        return result;
+    }
+
+    /// f of each lane, one after the other.
+    template <class F, class... Operands>
+    static Pack map_lanes(const F& f, const Operands&... operands) {
+        return from_lanes([&](int i) { return f(operands[i]...); });
+    }
+};
+
+template <class T, int N>
+struct ScalarTraits<Pack<T, N>> {
+    using Real = T;
+    static constexpr int num_lanes = N;
+};
+
+/// Lane i of x; of a plain number, which has one lane, the number.
+template <RealLanes Scalar>
+RealOf<Scalar> lane(const Scalar& x, int i) {
+    if constexpr (RealScalar<Scalar>) {
+        return x;
+    } else {
+        return x[i];
+    }
+}
+
+/// N fixed-size matrices side by side, matrix(i) in lane i.
+template <int N, class F>
+auto packed_matrix(const F& matrix) {
+    using Matrix = std::remove_cvref_t<decltype(matrix(0))>;
+    using T = typename Matrix::Scalar;
+    constexpr int size = Matrix::SizeAtCompileTime;
+    std::array<T, std::size_t(size * N)> numbers;
+    for (int i = 0; i < N; ++i) {
+        const auto& entries = matrix(i);
+        for (int k = 0; k < size; ++k) {
+            numbers[std::size_t(k * N + i)] = entries.data()[k];
+        }
+    }
+    Eigen::Matrix<Pack<T, N>, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime> result;
+    for (int k = 0; k < size; ++k) {
+        result.data()[k] = Pack<T, N>::load(numbers.data() + k * N);
+    }
+    return result;
+}
+
+/// The matrix in lane i.
+template <RealLanes Scalar, int rows, int columns>
+Eigen::Matrix<RealOf<Scalar>, rows, columns> lane(const Eigen::Matrix<Scalar, rows, columns>& matrix, int i) {
+    Eigen::Matrix<RealOf<Scalar>, rows, columns> result;
+    for (int k = 0; k < rows * columns; ++k) {
+        result.data()[k] = lane(matrix.data()[k], i);
+    }
+    return result;
+}
+
+}  // namespace softtissue
+
+namespace Eigen {
+
+/// Makes Pack an Eigen scalar; thresholds are those of the real number underneath.
+template <class T, int N>
+struct NumTraits<softtissue::Pack<T, N>> : NumTraits<T> {
+    using Real = softtissue::Pack<T, N>;
+    using NonInteger = softtissue::Pack<T, N>;
+    using Nested = softtissue::Pack<T, N>;
+    using Literal = T;
+};
+
+/// Lets plain scalars and matrices mix with packs: 2.0 * F, F * fibre.
+template <class T, int N, class Operation>
+struct ScalarBinaryOpTraits<softtissue::Pack<T, N>, T, Operation> {
+    using ReturnType = softtissue::Pack<T, N>;
+};
+template <class T, int N, class Operation>
+struct ScalarBinaryOpTraits<T, softtissue::Pack<T, N>, Operation> {
+    using ReturnType = softtissue::Pack<T, N>;
+};
+
+}  // namespace Eigen
