@@ -13,6 +13,7 @@
 
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
@@ -60,7 +61,7 @@ public:
     Index num_vertices() const { return static_cast<Index>(incidence_offsets_.size()) - 1; }
     const Connectivity<num_nodes>& stencils() const { return stencils_; }
 
-    /// Calls `energy_of(stencil)` for each stencil; returns the sum, added in stencil order.
+    /// Calls `energy_of(stencil)` for each stencil; returns the sum, added in a fixed order.
     template <Executor E, class EnergyOf>
     Scalar sum_energy(const E& executor, const EnergyOf& energy_of) {
         return sum_packed_energy<1>(executor, [&](Index s, Scalar* slot) { *slot = energy_of(s); });
@@ -108,7 +109,17 @@ public:
     template <int N, Executor E, class EnergiesOf>
     Scalar sum_packed_energy(const E& executor, const EnergiesOf& energies_of) {
         fill_slots<N>(executor, 0, num_stencils(), energies_of, energy_slots_.data(), 1);
-        return energy_slots_.head(num_stencils()).sum();
+        using Lanes = Pack<Scalar, natural_lanes<Scalar>>;
+        energy_slots_.tail(energy_slots_.size() - num_stencils()).setZero();
+        Lanes sums(0);
+        for (Index s = 0; s < num_stencils(); s += num_lanes<Lanes>) {
+            sums += Lanes::load(energy_slots_.data() + s);
+        }
+        Scalar sum(0);
+        for (int i = 0; i < num_lanes<Lanes>; ++i) {
+            sum += sums[i];
+        }
+        return sum;
     }
 
     /// The same with a GradientSlot for each stencil, one after the other.

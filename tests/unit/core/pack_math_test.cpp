@@ -20,9 +20,21 @@ bool is_same(T a, T b) {
 template <class T>
 std::vector<T> hard_numbers() {
     using Limits = std::numeric_limits<T>;
-    return {T(0),       T(-0.0),       T(1),           T(-1),          T(2.25),
-            T(-1e-3),   Limits::min(), -Limits::max(), Limits::max(),  Limits::denorm_min(),
-            T(1) / T(3), T(40),        T(-40),         Limits::infinity(), -Limits::infinity(),
+    return {T(0),
+            T(-0.0),
+            T(1),
+            T(-1),
+            T(2.25),
+            T(-1e-3),
+            Limits::min(),
+            -Limits::max(),
+            Limits::max(),
+            Limits::denorm_min(),
+            T(1) / T(3),
+            T(40),
+            T(-40),
+            Limits::infinity(),
+            -Limits::infinity(),
             Limits::quiet_NaN()};
 }
 

@@ -28,8 +28,8 @@ using Real = RealOf<P>;
 template <class P>
 P numbers(int shift) {
     using Limits = std::numeric_limits<Real<P>>;
-    const std::vector<Real<P>> list{Real<P>(1.5),      Real<P>(-2),   Real<P>(0),  Real<P>(-0.0), Limits::denorm_min(),
-                                    Limits::infinity(), Limits::max(), Real<P>(-7)};
+    const std::vector<Real<P>> list{Real<P>(1.5),         Real<P>(-2),        Real<P>(0),    Real<P>(-0.0),
+                                    Limits::denorm_min(), Limits::infinity(), Limits::max(), Real<P>(-7)};
     return P::from_lanes([&](int i) { return list[size_t(i + shift) % list.size()]; });
 }
 
@@ -47,7 +47,8 @@ TEST_CASE_TEMPLATE("every operation acts on each lane as on a plain number", P, 
     for (int shift = 0; shift < 8; ++shift) {
         const P a = numbers<P>(0);
         const P b = numbers<P>(shift);
-        const auto less = a < b, less_equal = a <= b, greater = a > b, greater_equal = a >= b, equal = a == b, differ = a != b;
+        const auto less = a<b, less_equal = a <= b, greater = a> b, greater_equal = a >= b, equal = a == b,
+                   differ = a != b;
         const P sum = a + b, difference = a - b, product = a * b, quotient = a / b, negative = -a;
         const P chosen = select(less | (equal & !differ), a, b);
         for (int i = 0; i < N; ++i) {
@@ -74,8 +75,8 @@ TEST_CASE_TEMPLATE("every operation acts on each lane as on a plain number", P, 
     CHECK(std::signbit(P(-0.0)[0]));
 }
 
-TEST_CASE_TEMPLATE("any and all", P, Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>, Pack<float, 64>,
-                   Pack<double, 3>) {
+TEST_CASE_TEMPLATE("any and all", P, Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>,
+                   Pack<float, 64>, Pack<double, 3>) {
     constexpr int N = num_lanes<P>;
     for (int special = 0; special < N; ++special) {
         const P x = P::from_lanes([&](int i) { return Real<P>(i == special ? 1 : 0); });
