@@ -11,6 +11,7 @@
 /// Tests       tests/unit/energy/stencil_assembly_test.cpp
 #pragma once
 
+#include <softtissue/core/config.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
@@ -223,6 +224,7 @@ private:
     /// `fill_tile(first, count)` fills the slots of a tile's stencils.
     template <Executor E, class FillTile>
     void add_tiles(const E& executor, const FillTile& fill_tile, BlockMatrix<Scalar>& hessian) {
+        SOFTTISSUE_ASSERT(!tile_runs_.empty());
         for (Index t = 0; t + 1 < Index(tile_runs_.size()); ++t) {
             const Index first = t * tile;
             fill_tile(first, std::min(tile, num_stencils() - first));

@@ -6,7 +6,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 using namespace softtissue;
 
@@ -61,6 +64,7 @@ struct Stencils {
 };
 
 constexpr Index num_vertices = 9;
+constexpr Index many = 1501;  // the Hessians of so many stencils fill more than two tiles
 const std::array<std::int32_t, 2> held{4, 0};
 
 }  // namespace
@@ -73,7 +77,8 @@ TEST_CASE("energies, gradients and Hessians are added as a naive loop adds them"
     CHECK(assembly.num_vertices() == num_vertices);
 
     const SequentialExecutor executor;
-    CHECK(assembly.sum_energy(executor, stencils.energy_of()) == doctest::Approx(stencils.energies.sum()).epsilon(1e-14));
+    CHECK(assembly.sum_energy(executor, stencils.energy_of()) ==
+          doctest::Approx(stencils.energies.sum()).epsilon(1e-14));
 
     Matrix3X<double> gradient = Matrix3X<double>::Ones(3, num_vertices), expected = gradient;
     MatrixX<double> dense = MatrixX<double>::Zero(3 * num_vertices, 3 * num_vertices);
@@ -100,9 +105,9 @@ TEST_CASE("energies, gradients and Hessians are added as a naive loop adds them"
     for (Index i = 0; i < prescribed.num_free(); ++i) {
         for (Index j = 0; j < prescribed.num_free(); ++j) {
             const Index row = prescribed.free_vertices()[size_t(i)], column = prescribed.free_vertices()[size_t(j)];
-            worst = std::max(worst, (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column))
-                                        .cwiseAbs()
-                                        .maxCoeff());
+            worst = std::max(
+                worst,
+                (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column)).cwiseAbs().maxCoeff());
         }
     }
     CHECK(worst < 1e-13);
@@ -131,6 +136,70 @@ TEST_CASE("the bits do not depend on the executor") {
     const VectorX<double> sequential = assemble(SequentialExecutor{});
     CHECK(assemble(ThreadExecutor(2)) == sequential);
     CHECK(assemble(ThreadExecutor(7)) == sequential);
+}
+
+TEST_CASE("more stencils than a tile holds, several at a time, are added as one by one") {
+    RandomGenerator random(3);
+    constexpr Index count = many, vertices = 60;
+    const Stencils stencils(count, vertices, random);
+    const PrescribedVertices prescribed(vertices, held);
+    Assembly assembly(stencils.vertices, vertices);
+    std::vector<std::vector<std::int32_t>> neighbours{size_t(prescribed.num_free())};
+    assembly.add_neighbours(prescribed, neighbours);
+    const BlockPattern pattern(std::move(neighbours));
+    assembly.bind(prescribed, pattern);
+
+    constexpr Index N = 4;
+    const auto each = [](Index pack, const auto& write) {
+        for (Index s = N * pack; s < std::min(N * pack + N, many); ++s) {
+            write(s, s - N * pack);
+        }
+    };
+    const auto energies = [&](Index pack, double* slots) {
+        std::fill_n(slots, N, 1e9);  // beyond the last stencil it must not count
+        each(pack, [&](Index s, Index lane) { slots[lane] = stencils.energies(s); });
+    };
+    const auto gradients = [&](Index pack, double* slots) {
+        each(pack, [&](Index s, Index lane) {
+            Eigen::Map<Assembly::GradientSlot>{slots + lane* 12} = stencils.gradient_of()(s);
+        });
+    };
+    const auto hessians = [&](Index pack, double* slots) {
+        each(pack, [&](Index s, Index lane) {
+            stencils.hessian_of()(s, Eigen::Map<Eigen::Matrix<double, 3, 3 * Assembly::num_block_pairs>>(
+                                         slots + lane * Assembly::hessian_slot));
+        });
+    };
+    const ThreadExecutor executor(3);
+    CHECK(assembly.sum_packed_energy<N>(executor, energies) ==
+          assembly.sum_energy(SequentialExecutor{}, stencils.energy_of()));
+    Matrix3X<double> gradient = Matrix3X<double>::Zero(3, vertices), packed_gradient = gradient;
+    assembly.add_gradient(SequentialExecutor{}, stencils.gradient_of(), gradient);
+    assembly.add_packed_gradient<N>(executor, gradients, packed_gradient);
+    CHECK(packed_gradient == gradient);
+
+    BlockMatrix<double> packed(pattern);
+    assembly.add_packed_hessian<N>(executor, hessians, packed);
+    MatrixX<double> dense = MatrixX<double>::Zero(3 * vertices, 3 * vertices);
+    for (Index s = 0; s < count; ++s) {
+        for (int a = 0; a < num_nodes; ++a) {
+            for (int b = 0; b < num_nodes; ++b) {
+                dense.block<3, 3>(3 * stencils.vertices(a, s), 3 * stencils.vertices(b, s)) +=
+                    stencils.hessians[size_t(s)].block<3, 3>(3 * a, 3 * b);
+            }
+        }
+    }
+    const MatrixX<double> assembled = packed.matrix().toDense();
+    double worst = 0;
+    for (Index i = 0; i < prescribed.num_free(); ++i) {
+        for (Index j = 0; j < prescribed.num_free(); ++j) {
+            const Index row = prescribed.free_vertices()[size_t(i)], column = prescribed.free_vertices()[size_t(j)];
+            worst = std::max(
+                worst,
+                (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column)).cwiseAbs().maxCoeff());
+        }
+    }
+    CHECK(worst < 1e-11);
 }
 
 TEST_CASE("pairs of nodes fill their slots without gap") {
