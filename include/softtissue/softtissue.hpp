@@ -41,6 +41,9 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/float16.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
+#include <softtissue/core/pack_mask.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/random.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/element/concepts.hpp>
@@ -60,6 +63,7 @@
 #include <softtissue/energy/placement.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/energy/rest_operators.hpp>
+#include <softtissue/energy/rest_packs.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/energy/strain_frame.hpp>
 #include <softtissue/linalg/branchless_exp.hpp>
@@ -92,6 +96,7 @@
 #include <softtissue/material/fung_orthotropic_field.hpp>
 #include <softtissue/material/isotropic_hessian.hpp>
 #include <softtissue/material/orthonormal.hpp>
+#include <softtissue/material/packed.hpp>
 #include <softtissue/material/stable_neo_hookean.hpp>
 #include <softtissue/mesh/adjacency.hpp>
 #include <softtissue/mesh/bounding_volume_hierarchy.hpp>

@@ -17,8 +17,10 @@
 #include <cmath>
 #include <concepts>
 
-#if defined(__SSE2__)
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace softtissue {

@@ -5,7 +5,8 @@
 /// What        PsdFilter {none, clamp, absolute}; filtered(H, filter) by a numeric eigen-decomposition
 /// Equation    H = sum_k l_k v_k v_k^T  ->  sum_k f(l_k) v_k v_k^T;  clamp: f(l) = max(l, 0), absolute: f(l) = |l|
 /// Shapes      H: N x N, N fixed.  Only the lower triangle is read; the result is exactly symmetric.
-/// Valid       every finite H; packs, whose lanes do not depend on each other.  A matrix that holds NaN or infinity stays non-finite, nothing is thrown.
+/// Valid       every finite H.  A matrix that holds NaN or infinity stays non-finite, nothing is thrown.
+///             Packs: no lane depends on the others.
 /// Source      clamp: Teran et al. 2005; absolute: Chen et al. 2024, "Stabler Neo-Hookean Simulation"
 /// Cost        one Cholesky factorisation where H is positive definite, else one eigen-decomposition
 /// Tests       tests/unit/linalg/psd_filter_test.cpp

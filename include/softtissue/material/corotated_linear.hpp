@@ -57,8 +57,10 @@ public:
     /// N laws side by side, law(i) in lane i.
     template <int N, class Law>
     static CorotatedLinear<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
-        return CorotatedLinear<Pack<Scalar, N>>::unchecked(packed_lame<N>([&](int i) { return law(i).lame_; }),
-                                                           packed_matrix<N>([&](int i) { return law(i).rotation_; }));
+        using Lanes = Pack<Scalar, N>;
+        const LameParameters<Lanes> lame{.mu = Lanes::from_lanes([&](int i) { return law(i).lame_.mu; }),
+                                         .lambda = Lanes::from_lanes([&](int i) { return law(i).lame_.lambda; })};
+        return CorotatedLinear<Lanes>::unchecked(lame, packed_matrix<N>([&](int i) { return law(i).rotation_; }));
     }
 
     Parameters parameters() const { return lame_; }

@@ -53,7 +53,10 @@ public:
     /// N laws side by side, law(i) in lane i.
     template <int N, class Law>
     static CorotatedLinearPolar<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
-        return CorotatedLinearPolar<Pack<Scalar, N>>::unchecked(packed_lame<N>([&](int i) { return law(i).lame_; }));
+        using Lanes = Pack<Scalar, N>;
+        const LameParameters<Lanes> lame{.mu = Lanes::from_lanes([&](int i) { return law(i).lame_.mu; }),
+                                         .lambda = Lanes::from_lanes([&](int i) { return law(i).lame_.lambda; })};
+        return CorotatedLinearPolar<Lanes>::unchecked(lame);
     }
 
     Parameters parameters() const { return lame_; }

@@ -10,11 +10,9 @@
 #pragma once
 
 #include <softtissue/core/error.hpp>
-#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <limits>
-#include <type_traits>
 
 namespace softtissue {
 
@@ -67,15 +65,6 @@ LameParameters<Scalar> lame_parameters(const YoungPoisson<Scalar>& constants) {
     const Scalar E = constants.young_modulus;
     const Scalar nu = constants.poisson_ratio;
     return {E / (Scalar(2) * (Scalar(1) + nu)), E * nu / ((Scalar(1) + nu) * (Scalar(1) - Scalar(2) * nu))};
-}
-
-/// N pairs side by side, lame(i) in lane i.
-template <int N, class Lame>
-auto packed_lame(const Lame& lame) {
-    using Scalar = std::remove_cvref_t<decltype(lame(0).mu)>;
-    using Lanes = Pack<Scalar, N>;
-    return LameParameters<Lanes>{Lanes::from_lanes([&](int i) { return lame(i).mu; }),
-                                 Lanes::from_lanes([&](int i) { return lame(i).lambda; })};
 }
 
 /// (E, nu) of (mu, lambda).

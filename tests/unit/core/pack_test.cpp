@@ -15,7 +15,6 @@ static_assert(FieldScalar<Pack<float, 4>> && RealLanes<Pack<double, 2>> && RealL
 static_assert(!RealScalar<Pack<float, 4>> && !HasPlainValue<Pack<float, 4>> && HasPlainValue<double>);
 static_assert(std::same_as<RealOf<Pack<float, 4>>, float> && num_lanes<Pack<float, 4>> == 4 && num_lanes<double> == 1);
 static_assert(std::is_trivially_copyable_v<Pack<double, 2>>);
-static_assert(natural_lanes<float> >= natural_lanes<double> && natural_lanes<long double> == 1);
 static_assert(sizeof(Pack<float, natural_lanes<float>>) == sizeof(float) * natural_lanes<float>);
 static_assert(std::convertible_to<int, Pack<float, 4>> && !std::convertible_to<Pack<float, 4>, float>);
 
@@ -73,22 +72,6 @@ TEST_CASE_TEMPLATE("every operation acts on each lane as on a plain number", P, 
     x /= 2;
     CHECK(x[0] == ((Real<P>(1.5) + 2) * 3 - 1) / 2);
     CHECK(std::signbit(P(-0.0)[0]));
-}
-
-TEST_CASE_TEMPLATE("any and all", P, Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>,
-                   Pack<float, 64>, Pack<double, 3>) {
-    constexpr int N = num_lanes<P>;
-    for (int special = 0; special < N; ++special) {
-        const P x = P::from_lanes([&](int i) { return Real<P>(i == special ? 1 : 0); });
-        CHECK(any_of(x > P(0)));
-        CHECK(!any_of(x > P(1)));
-        CHECK(all_of(x >= P(0)));
-        CHECK(all_of(x > P(0)) == (N == 1));
-        CHECK(any_of(!(x < P(2))) == false);
-    }
-    CHECK(any_of(true));
-    CHECK(!all_of(false));
-    CHECK(select(true, 1.0, 2.0) == 1.0);
 }
 
 TEST_CASE("memory of any alignment") {
