@@ -43,7 +43,8 @@ template <RealLanes Scalar, int N>
 auto is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
     auto is_definite = H(0, 0) > Scalar(0);
     for (int k = 0; k < N; ++k) {
-        is_definite = is_definite & (H(k, k) > Scalar(0));
+        const auto is_positive = H(k, k) > Scalar(0);
+        is_definite = is_definite & is_positive;
         if (!any_of(is_definite)) {
             break;
         }

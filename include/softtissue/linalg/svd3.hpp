@@ -47,9 +47,9 @@ template <class Scalar>
 Vector3<Scalar> any_orthogonal(const Vector3<Scalar>& u) {
     using std::abs;
     using std::sqrt;
-    const Vector3<Scalar> size(abs(u(0)), abs(u(1)), abs(u(2)));
-    const auto is_x = (size(0) <= size(1)) & (size(0) <= size(2));
-    const auto is_y = size(1) <= size(2);
+    const Scalar x = abs(u(0)), y = abs(u(1)), z = abs(u(2));
+    const auto is_x = (x <= y) & (x <= z);
+    const auto is_y = y <= z;
     const Scalar zero(0), one(1);
     const Vector3<Scalar> axis(select(is_x, one, zero), select(is_x, zero, select(is_y, one, zero)),
                                select(is_x, zero, select(is_y, zero, one)));

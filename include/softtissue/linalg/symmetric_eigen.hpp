@@ -79,14 +79,14 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
     using std::sqrt;
     using Limits = std::numeric_limits<RealOf<Scalar>>;
     // below half an ulp of both diagonal entries a rotation changes nothing
-    const Scalar threshold(RealOf<Scalar>(0.25) * Limits::epsilon());
+    const Scalar threshold(RealOf<Scalar>(0.25) * Limits::epsilon()), smallest(Limits::min());
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool is_diagonal = true;
         for (int p = 0; p < N; ++p) {
             for (int q = p + 1; q < N; ++q) {
                 const Scalar off = abs(H(q, p));
                 const Scalar size = sqrt(Scalar(abs(H(p, p)))) * sqrt(Scalar(abs(H(q, q))));
-                const auto is_off = (off > threshold * size) & (off > Scalar(Limits::min()));
+                const auto is_off = (off > threshold * size) & (off > smallest);
                 if (any_of(is_off)) {
                     is_diagonal = false;
                     detail::jacobi_rotate(is_off, H, result.vectors, p, q);

@@ -103,7 +103,7 @@ TEST_CASE_TEMPLATE("matrices of packs are packs of matrices", S, float, double) 
         CHECK(lane(A, i) == M);
         CHECK((lane(B, i) - S(2) * (M * M.transpose() - Matrix3<S>::Identity())).cwiseAbs().maxCoeff() <
               S(200) * std::numeric_limits<S>::epsilon());
-        CHECK(norm[i] == doctest::Approx(M.squaredNorm()));
+        CHECK(double(norm[i]) == doctest::Approx(double(M.squaredNorm())));
         CHECK(lane(trace, i) == M.trace());
     }
     CHECK(lane(S(3), 0) == S(3));
