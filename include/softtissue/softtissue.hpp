@@ -82,6 +82,8 @@
 #include <softtissue/linalg/psd_filter_batch.hpp>
 #include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/linalg/rotation_fit.hpp>
+#include <softtissue/linalg/rotation_newton.hpp>
+#include <softtissue/linalg/rotation_start.hpp>
 #include <softtissue/linalg/svd3.hpp>
 #include <softtissue/linalg/symmetric_eigen.hpp>
 #include <softtissue/material/arap.hpp>

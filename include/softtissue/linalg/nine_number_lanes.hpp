@@ -6,7 +6,7 @@
 /// Equation    lanes[i][l] = columns[9 l + i]. A register of N lanes holds number N r + p of nine registers' worth of columns in
 ///             its lane p; 9 l + i = N r + p and the remainders by 9 and by N of both sides say how far lane p moves from
 ///             register to register (the same for all i) and then from lane to lane.
-/// Shapes      columns: nine numbers each without gaps; float and double; n a multiple of the lanes of a register
+/// Shapes      columns: nine numbers each without gaps; float and double; fast where n is a multiple of the lanes of a register
 /// Why         one number after the other costs a load and a store each: more than the arithmetic on a matrix
 /// Needs       the vector extensions of gcc and clang for speed; plain loops elsewhere
 /// Cost        45 operations on registers a way and N columns
@@ -122,20 +122,21 @@ template <RealScalar S, std::size_t n>
 void columns_to_lanes(const S* columns, S (&lanes)[9][n]) {
 #if defined(__GNUC__)
     constexpr std::size_t N = detail::transposed_bytes / sizeof(S);
-    static_assert(n % N == 0, "whole registers");
-    for (std::size_t l = 0; l < n; l += N) {
-        detail::NineRegisters<S, N> registers;
-        registers.load(columns + 9 * l, N);
-        registers.columns_to_lanes();
-        registers.store(lanes[0] + l, n);
+    if constexpr (n % N == 0) {
+        for (std::size_t l = 0; l < n; l += N) {
+            detail::NineRegisters<S, N> registers;
+            registers.load(columns + 9 * l, N);
+            registers.columns_to_lanes();
+            registers.store(lanes[0] + l, n);
+        }
+        return;
     }
-#else
+#endif
     for (std::size_t l = 0; l < n; ++l) {
         for (std::size_t i = 0; i < 9; ++i) {
             lanes[i][l] = columns[9 * l + i];
         }
     }
-#endif
 }
 
 /// columns[9 l + i] = lanes[i][l].
@@ -143,20 +144,21 @@ template <RealScalar S, std::size_t n>
 void lanes_to_columns(const S (&lanes)[9][n], S* columns) {
 #if defined(__GNUC__)
     constexpr std::size_t N = detail::transposed_bytes / sizeof(S);
-    static_assert(n % N == 0, "whole registers");
-    for (std::size_t l = 0; l < n; l += N) {
-        detail::NineRegisters<S, N> registers;
-        registers.load(lanes[0] + l, n);
-        registers.lanes_to_columns();
-        registers.store(columns + 9 * l, N);
+    if constexpr (n % N == 0) {
+        for (std::size_t l = 0; l < n; l += N) {
+            detail::NineRegisters<S, N> registers;
+            registers.load(lanes[0] + l, n);
+            registers.lanes_to_columns();
+            registers.store(columns + 9 * l, N);
+        }
+        return;
     }
-#else
+#endif
     for (std::size_t l = 0; l < n; ++l) {
         for (std::size_t i = 0; i < 9; ++i) {
             columns[9 * l + i] = lanes[i][l];
         }
     }
-#endif
 }
 
 }  // namespace softtissue

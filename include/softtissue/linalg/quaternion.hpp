@@ -13,6 +13,7 @@
 
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <cmath>
@@ -89,19 +90,23 @@ template <FieldScalar S>
 Quaternion<S> quaternion_from_rotation_matrix(const Matrix3<S>& R) {
     using std::sqrt;
     // Row k below is 4 q_k q: the row with the largest diagonal entry divides by the largest component.
-    const S trace = R(0, 0) + R(1, 1) + R(2, 2);
+    const S one(1);
+    const S xx = R(0, 0), yy = R(1, 1), zz = R(2, 2);
+    const S trace = xx + yy + zz;
+    const auto is_w = (trace >= xx) & (trace >= yy) & (trace >= zz);
+    const auto is_x = (xx >= yy) & (xx >= zz);
+    const auto is_y = yy >= zz;
+    const auto choose = [&](const S& w, const S& x, const S& y, const S& z) {
+        return select(is_w, w, select(is_x, x, select(is_y, y, z)));
+    };
+    const S w_x = R(2, 1) - R(1, 2), w_y = R(0, 2) - R(2, 0), w_z = R(1, 0) - R(0, 1);
+    const S x_y = R(0, 1) + R(1, 0), x_z = R(0, 2) + R(2, 0), y_z = R(1, 2) + R(2, 1);
     Quaternion<S> q;
-    if (value_of(trace) >= value_of(R(0, 0)) && value_of(trace) >= value_of(R(1, 1)) &&
-        value_of(trace) >= value_of(R(2, 2))) {
-        q << S(1) + trace, R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1);
-    } else if (value_of(R(0, 0)) >= value_of(R(1, 1)) && value_of(R(0, 0)) >= value_of(R(2, 2))) {
-        q << R(2, 1) - R(1, 2), S(1) + R(0, 0) - R(1, 1) - R(2, 2), R(0, 1) + R(1, 0), R(0, 2) + R(2, 0);
-    } else if (value_of(R(1, 1)) >= value_of(R(2, 2))) {
-        q << R(0, 2) - R(2, 0), R(0, 1) + R(1, 0), S(1) - R(0, 0) + R(1, 1) - R(2, 2), R(1, 2) + R(2, 1);
-    } else {
-        q << R(1, 0) - R(0, 1), R(0, 2) + R(2, 0), R(1, 2) + R(2, 1), S(1) - R(0, 0) - R(1, 1) + R(2, 2);
-    }
-    return q / S(sqrt(q.dot(q)));
+    q(0) = choose(one + trace, w_x, w_y, w_z);
+    q(1) = choose(w_x, one + xx - yy - zz, x_y, x_z);
+    q(2) = choose(w_y, x_y, one - xx + yy - zz, y_z);
+    q(3) = choose(w_z, x_z, y_z, one - xx - yy + zz);
+    return q * S(one / sqrt(S(q.dot(q))));
 }
 
 /// Rotation about `r` by |r| (Rodrigues' formula, through the half angle: no cancellation near zero).
@@ -119,10 +124,9 @@ Vector3<S> rotation_vector_from_rotation_matrix(const Matrix3<S>& R) {
 /// The quaternion of the rotation that applies `b` first, then `a`.
 template <FieldScalar S>
 Quaternion<S> quaternion_product(const Quaternion<S>& a, const Quaternion<S>& b) {
-    return {a(0) * b(0) - a(1) * b(1) - a(2) * b(2) - a(3) * b(3),
-            a(0) * b(1) + a(1) * b(0) + a(2) * b(3) - a(3) * b(2),
-            a(0) * b(2) - a(1) * b(3) + a(2) * b(0) + a(3) * b(1),
-            a(0) * b(3) + a(1) * b(2) - a(2) * b(1) + a(3) * b(0)};
+    return {
+        a(0) * b(0) - a(1) * b(1) - a(2) * b(2) - a(3) * b(3), a(0) * b(1) + a(1) * b(0) + a(2) * b(3) - a(3) * b(2),
+        a(0) * b(2) - a(1) * b(3) + a(2) * b(0) + a(3) * b(1), a(0) * b(3) + a(1) * b(2) - a(2) * b(1) + a(3) * b(0)};
 }
 
 /// q or -q, whichever lies in the hemisphere of `reference`; q where both are equally far.
@@ -144,8 +148,7 @@ bool is_rotation(const Matrix3<S>& R, RealOf<S> tolerance) {
         }
     }
     const S det = R(0, 0) * (R(1, 1) * R(2, 2) - R(1, 2) * R(2, 1)) -
-                  R(0, 1) * (R(1, 0) * R(2, 2) - R(1, 2) * R(2, 0)) +
-                  R(0, 2) * (R(1, 0) * R(2, 1) - R(1, 1) * R(2, 0));
+                  R(0, 1) * (R(1, 0) * R(2, 2) - R(1, 2) * R(2, 0)) + R(0, 2) * (R(1, 0) * R(2, 1) - R(1, 1) * R(2, 0));
     return value_of(det) > 0;
 }
 

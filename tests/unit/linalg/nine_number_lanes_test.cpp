@@ -29,6 +29,20 @@ TEST_CASE_TEMPLATE("every number goes to its lane, and back to its place", S, fl
     CHECK(back[9 * n] == S(-1));
 }
 
+TEST_CASE_TEMPLATE("three columns fill no register", S, float, double) {
+    S columns[27], lanes[9][3], back[27];
+    for (std::size_t k = 0; k < 27; ++k) {
+        columns[k] = S(k);
+    }
+    columns_to_lanes(columns, lanes);
+    CHECK(lanes[0][2] == S(18));
+    CHECK(lanes[8][1] == S(17));
+    lanes_to_columns(lanes, back);
+    for (std::size_t k = 0; k < 27; ++k) {
+        CHECK(back[k] == columns[k]);
+    }
+}
+
 TEST_CASE("columns of any alignment") {
     constexpr std::size_t n = 16;
     float numbers[9 * n + 3], lanes[9][n];
