@@ -82,8 +82,13 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
     const Scalar threshold(RealOf<Scalar>(0.25) * Limits::epsilon()), smallest(Limits::min());
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool is_diagonal = true;
-        for (int p = 0; p < N; ++p) {
-            for (int q = p + 1; q < N; ++q) {
+        // Planes (p, q) of one sum modulo N are disjoint: the processor need not wait for one to turn the next.
+        for (int sum = 0; sum < N; ++sum) {
+            for (int p = 0; p < N; ++p) {
+                const int q = (sum - p + N) % N;
+                if (q <= p) {
+                    continue;
+                }
                 const Scalar off = abs(H(q, p));
                 const Scalar size = sqrt(Scalar(abs(H(p, p)))) * sqrt(Scalar(abs(H(q, q))));
                 const auto is_off = (off > threshold * size) & (off > smallest);
