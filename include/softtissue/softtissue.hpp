@@ -150,6 +150,7 @@
 #include <softtissue/ndg/shaped_body.hpp>
 #include <softtissue/ndg/vertex_network.hpp>
 #include <softtissue/nn/adamw.hpp>
+#include <softtissue/nn/batch_product.hpp>
 #include <softtissue/nn/concepts.hpp>
 #include <softtissue/nn/gelu.hpp>
 #include <softtissue/nn/layer_norm.hpp>

@@ -8,7 +8,7 @@
 ///             parameters: W (outputs x inputs, row after row as PyTorch stores it), then b.
 /// Threads     W is cut into the same ranges of rows for every executor: same bits for any number of threads
 /// Refuses     sizes below one (InvalidInput); arguments of other sizes are a caller's bug (SOFTTISSUE_ASSERT)
-/// Cost        2 flop an entry of W and sample, each way; with one sample one reading of W. One column allocates nothing.
+/// Cost        2 flop an entry of W and sample, each way; up to four samples one reading of W. The value allocates nothing.
 /// Tests       tests/unit/nn/linear_test.cpp
 #pragma once
 
@@ -17,6 +17,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/nn/batch_product.hpp>
 
 #include <algorithm>
 
@@ -60,12 +61,13 @@ public:
         const Eigen::Map<const WeightMatrix> W = const_weight(parameters);
         const Eigen::Map<const VectorX<S>> b = const_bias(parameters);
         for_each_chunk(executor, [&](Index, Index first, Index rows) {
+            y.middleRows(first, rows).colwise() = b.segment(first, rows);
             if (x.cols() == 1) {
-                y.col(0).segment(first, rows) = b.segment(first, rows);
                 y.col(0).segment(first, rows).noalias() += W.middleRows(first, rows) * x.col(0);
+            } else if (x.cols() <= largest_small_batch) {
+                add_batch_product<S>(W.row(first).data(), x, y.middleRows(first, rows));
             } else {
-                y.middleRows(first, rows).colwise() = b.segment(first, rows);
-                y.middleRows(first, rows).noalias() += W.middleRows(first, rows) * x;
+                add_in_pieces(W.middleRows(first, rows), x, y.middleRows(first, rows));
             }
         });
     }
@@ -109,6 +111,25 @@ public:
     }
 
 private:
+    /// Beyond this Eigen's product is faster than one without copies.
+    static constexpr Index largest_small_batch = 8;
+
+    /// y += W x in pieces whose copies Eigen puts on the stack.
+    static void add_in_pieces(ConstRef<WeightMatrix> W, ConstRef<MatrixX<S>> x, Eigen::Ref<MatrixX<S>> y) {
+        constexpr Index stack = 1 << 17, depth = 256, width = stack / (depth * Index(sizeof(S)));
+        for (Index row = 0; row < W.rows(); row += width) {
+            const Index rows = std::min(width, W.rows() - row);
+            for (Index sample = 0; sample < x.cols(); sample += width) {
+                const Index samples = std::min(width, x.cols() - sample);
+                for (Index k = 0; k < W.cols(); k += depth) {
+                    const Index terms = std::min(depth, W.cols() - k);
+                    y.block(row, sample, rows, samples).noalias() +=
+                        W.block(row, k, rows, terms) * x.block(k, sample, terms, samples);
+                }
+            }
+        }
+    }
+
     /// Enough rows to be worth a thread's while, and at most 64 ranges; a multiple of 16.
     Index rows_per_chunk() const { return std::max(Index(256), (outputs_ + 1023) / 1024 * 16); }
     Index num_chunks() const { return (outputs_ + rows_per_chunk() - 1) / rows_per_chunk(); }

@@ -10,8 +10,8 @@
 /// Threads     same bits for every executor
 /// Refuses     sizes below one; parameters, inputs, outputs and gradients of other sizes (InvalidInput)
 /// Source      Nolte et al. 2026, sec. 4.4
-/// Cost        that of the linear layers: 2 flop a weight and sample, three times that with gradients. With one sample
-///             infer_into() allocates nothing.
+/// Cost        that of the linear layers: 2 flop a weight and sample, three times that with gradients. infer_into()
+///             allocates nothing.
 /// Tests       tests/unit/nn/mlp_layers_test.cpp
 #pragma once
 

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <utility>
 
 using namespace softtissue;
 
@@ -22,25 +23,26 @@ MatrixX<S> random_matrix(Index rows, Index columns, std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE_TEMPLATE("W x + b with W row after row, of one sample, of a few and of many rows", S, float, double) {
-    for (const Index outputs : {1, 5, 257, 1100}) {
-        const Linear<S> layer(7, outputs);
-        REQUIRE(layer.num_parameters() == 8 * outputs);
+    for (const auto& size : {std::pair<Index, Index>{7, 1}, {7, 5}, {7, 1100}, {300, 257}}) {
+        const Index inputs = size.first, outputs = size.second;
+        const Linear<S> layer(inputs, outputs);
+        REQUIRE(layer.num_parameters() == (inputs + 1) * outputs);
         const VectorX<S> parameters = random_matrix<S>(layer.num_parameters(), 1, 1);
-        for (const Index batch : {1, 2, 19}) {
-            const MatrixX<S> x = random_matrix<S>(7, batch, 2);
+        for (const Index batch : {1, 2, 19, 140}) {
+            const MatrixX<S> x = random_matrix<S>(inputs, batch, 2);
             MatrixX<S> y(outputs, batch);
             layer.forward_into(parameters, x, y);
             double worst = 0;
             for (Index sample = 0; sample < batch; ++sample) {
                 for (Index r = 0; r < outputs; ++r) {
-                    double expected = double(parameters(7 * outputs + r));
-                    for (Index c = 0; c < 7; ++c) {
-                        expected += double(parameters(7 * r + c)) * double(x(c, sample));
+                    double expected = double(parameters(inputs * outputs + r));
+                    for (Index c = 0; c < inputs; ++c) {
+                        expected += double(parameters(inputs * r + c)) * double(x(c, sample));
                     }
                     worst = std::max(worst, std::abs(double(y(r, sample)) - expected));
                 }
             }
-            CHECK(worst <= 10 * double(std::numeric_limits<S>::epsilon()));
+            CHECK(worst <= double(inputs + 3) * double(std::numeric_limits<S>::epsilon()));
         }
     }
 }

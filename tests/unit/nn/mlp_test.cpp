@@ -65,13 +65,15 @@ TEST_CASE_TEMPLATE("the functions are those of the layers with the network's par
     CHECK(dx == expected_dx);
 }
 
-TEST_CASE_TEMPLATE("inference of one sample allocates nothing", S, float, double) {
-    Mlp<S> network({50, {300, 20}, 700});
+TEST_CASE_TEMPLATE("inference allocates nothing, of one sample, of a few and of many", S, float, double) {
+    Mlp<S> network({50, {300, 20}, 1500});
     network.initialize(1);
-    const MatrixX<S> x = MatrixX<S>::Constant(50, 1, S(0.3));
-    auto scratch = network.make_scratch(1);
-    MatrixX<S> y(700, 1);
-    const softtissue_test::AllocationCounter counter;
-    network.infer_into(x, scratch, y);
-    CHECK(counter.count() == 0);
+    for (const Index batch : {1, 2, 8, 9, 150}) {
+        const MatrixX<S> x = MatrixX<S>::Constant(50, batch, S(0.3));
+        auto scratch = network.make_scratch(batch);
+        MatrixX<S> y(1500, batch);
+        const softtissue_test::AllocationCounter counter;
+        network.infer_into(x, scratch, y);
+        CHECK(counter.count() == 0);
+    }
 }
