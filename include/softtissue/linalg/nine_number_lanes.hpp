@@ -8,11 +8,12 @@
 ///             register to register (the same for all i) and then from lane to lane.
 /// Shapes      columns: nine numbers each without gaps; float and double; fast where n is a multiple of the lanes of a register
 /// Why         one number after the other costs a load and a store each: more than the arithmetic on a matrix
-/// Needs       the vector extensions of gcc and clang for speed; plain loops elsewhere
+/// Width       natural_lanes of pack_mask.hpp; plain loops where that is one
 /// Cost        45 operations on registers a way and N columns
 /// Tests       tests/unit/linalg/nine_number_lanes_test.cpp
 #pragma once
 
+#include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <cstddef>
@@ -22,16 +23,6 @@
 namespace softtissue {
 
 namespace detail {
-
-#if defined(__AVX512F__)
-inline constexpr std::size_t transposed_bytes = 64;
-#elif defined(__AVX__)
-inline constexpr std::size_t transposed_bytes = 32;
-#else
-inline constexpr std::size_t transposed_bytes = 16;
-#endif
-
-#if defined(__GNUC__)
 
 /// Nine registers of N lanes.
 template <class S, std::size_t N>
@@ -59,7 +50,7 @@ public:
     }
 
 private:
-    typedef S Register __attribute__((vector_size(N * sizeof(S))));
+    using Register = typename LaneStorage<S, int(N), true>::Values;
     using Lanes = std::make_index_sequence<N>;
 
     /// 1 / N modulo 9
@@ -113,28 +104,24 @@ private:
     Register registers_[9];
 };
 
-#endif
-
 }  // namespace detail
 
 /// lanes[i][l] = columns[9 l + i].
 template <RealScalar S, std::size_t n>
 void columns_to_lanes(const S* columns, S (&lanes)[9][n]) {
-#if defined(__GNUC__)
-    constexpr std::size_t N = detail::transposed_bytes / sizeof(S);
-    if constexpr (n % N == 0) {
+    constexpr std::size_t N = std::size_t(natural_lanes<S>);
+    if constexpr (N > 1 && n % N == 0) {
         for (std::size_t l = 0; l < n; l += N) {
             detail::NineRegisters<S, N> registers;
             registers.load(columns + 9 * l, N);
             registers.columns_to_lanes();
             registers.store(lanes[0] + l, n);
         }
-        return;
-    }
-#endif
-    for (std::size_t l = 0; l < n; ++l) {
-        for (std::size_t i = 0; i < 9; ++i) {
-            lanes[i][l] = columns[9 * l + i];
+    } else {
+        for (std::size_t l = 0; l < n; ++l) {
+            for (std::size_t i = 0; i < 9; ++i) {
+                lanes[i][l] = columns[9 * l + i];
+            }
         }
     }
 }
@@ -142,21 +129,19 @@ void columns_to_lanes(const S* columns, S (&lanes)[9][n]) {
 /// columns[9 l + i] = lanes[i][l].
 template <RealScalar S, std::size_t n>
 void lanes_to_columns(const S (&lanes)[9][n], S* columns) {
-#if defined(__GNUC__)
-    constexpr std::size_t N = detail::transposed_bytes / sizeof(S);
-    if constexpr (n % N == 0) {
+    constexpr std::size_t N = std::size_t(natural_lanes<S>);
+    if constexpr (N > 1 && n % N == 0) {
         for (std::size_t l = 0; l < n; l += N) {
             detail::NineRegisters<S, N> registers;
             registers.load(lanes[0] + l, n);
             registers.lanes_to_columns();
             registers.store(columns + 9 * l, N);
         }
-        return;
-    }
-#endif
-    for (std::size_t l = 0; l < n; ++l) {
-        for (std::size_t i = 0; i < 9; ++i) {
-            columns[9 * l + i] = lanes[i][l];
+    } else {
+        for (std::size_t l = 0; l < n; ++l) {
+            for (std::size_t i = 0; i < 9; ++i) {
+                columns[9 * l + i] = lanes[i][l];
+            }
         }
     }
 }

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <Eigen/Core>
@@ -44,7 +45,7 @@ public:
     }
 
 private:
-    static constexpr int lanes = std::max(4, EIGEN_MAX_STATIC_ALIGN_BYTES / int(sizeof(S)));
+    static constexpr int lanes = std::max(4, natural_lanes<S>);
     static constexpr int tile_rows = 4, tile_samples = 4;
     using Lanes = Eigen::Array<S, lanes, 1>;
 
