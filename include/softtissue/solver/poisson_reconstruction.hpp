@@ -45,11 +45,7 @@ public:
           rest_(RestOperators<ElementType, Scalar>::at(mesh, mesh.rest_positions)),
           factor_(normal_matrix(), "Poisson reconstruction (free vertices)"),
           right_hand_side_(3, mesh.num_vertices()),
-          correction_(3, prescribed_.num_free()) {
-        for (const std::int32_t row : factor_.order()) {
-            vertex_of_pivot_.push_back(prescribed_.free_vertices()[size_t(row)]);
-        }
-    }
+          correction_(CholeskyFactor<Scalar>::RightHandSides::Zero(4, factor_.num_places())) {}
 
     Index num_cells() const { return assembly_.num_stencils(); }
     Index num_vertices() const { return assembly_.num_vertices(); }
@@ -83,12 +79,13 @@ public:
                 return rest_.volumes(c) * missing * rest_.gradients.template middleCols<num_nodes>(num_nodes * c);
             },
             right_hand_side_);
-        for (size_t k = 0; k < vertex_of_pivot_.size(); ++k) {
-            correction_.col(Index(k)) = right_hand_side_.col(vertex_of_pivot_[k]);
+        const std::vector<std::int32_t>& free = prescribed_.free_vertices();
+        for (Index k = 0; k < factor_.size(); ++k) {
+            correction_.col(factor_.place(k)).template head<3>() = right_hand_side_.col(free[size_t(k)]);
         }
         factor_.solve_in_place(correction_);
-        for (size_t k = 0; k < vertex_of_pivot_.size(); ++k) {
-            x.col(vertex_of_pivot_[k]) += correction_.col(Index(k));
+        for (Index k = 0; k < factor_.size(); ++k) {
+            x.col(free[size_t(k)]) += correction_.col(factor_.place(k)).template head<3>();
         }
     }
 
@@ -136,8 +133,8 @@ private:
     StencilAssembly<num_nodes, Scalar> assembly_;
     RestOperators<ElementType, Scalar> rest_;
     CholeskyFactor<Scalar> factor_;
-    std::vector<std::int32_t> vertex_of_pivot_;
-    Matrix3X<Scalar> right_hand_side_, correction_;
+    Matrix3X<Scalar> right_hand_side_;
+    typename CholeskyFactor<Scalar>::RightHandSides correction_;
 };
 
 }  // namespace softtissue

@@ -89,6 +89,9 @@ public:
     /// Which unknown each pivot is.
     const std::vector<std::int32_t>& order() const { return order_; }
 
+    /// First pivot of each group of unknowns with the same neighbours; the others follow.
+    const std::vector<std::int32_t>& group_pivots() const { return first_pivot_of_group_; }
+
     /// Children come before their parents.
     const std::vector<Front>& fronts() const { return fronts_; }
     std::span<const std::int32_t> rows(const Front& front) const {

@@ -79,6 +79,11 @@ public:
     /// Null before the first analyzePattern().
     const std::shared_ptr<const SupernodalAnalysis>& analysis() const { return analysis_; }
 
+    /// The columns of L that a front eliminates, over the front's rows; nothing above the diagonal is meant.
+    Eigen::Map<const MatrixX<Scalar>> panel(const Front& front) const {
+        return {values_.data() + front.panel, front.height, front.width};
+    }
+
     /// A^-1 b.
     VectorX<Scalar> solve(const VectorX<Scalar>& b) const {
         SOFTTISSUE_ASSERT(info_ == Eigen::Success && b.size() == analysis_->num_unknowns());
