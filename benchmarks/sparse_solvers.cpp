@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+// Sparse Cholesky factorisations and solves on a layered limb of the paper's size: the Poisson system with three right-hand
+// sides, a frame of it, and a Newton system in 3x3 blocks, each beside Eigen's and, where it is there, CHOLMOD's. CHOLMOD is at
+// its best with OMP_THREAD_LIMIT=1 and a BLAS that knows the processor (OpenBLAS: OPENBLAS_CORETYPE).
+
+#include <softtissue/core/random.hpp>
+#include <softtissue/core/thread_executor.hpp>
+#include <softtissue/element/prism6.hpp>
+#include <softtissue/energy/prescribed_vertices.hpp>
+#include <softtissue/energy/stencil_assembly.hpp>
+#include <softtissue/mesh/prism_layers.hpp>
+#include <softtissue/solver/poisson_reconstruction.hpp>
+#include <softtissue/sparse/block_matrix.hpp>
+#include <softtissue/sparse/cholesky_factor.hpp>
+#include <softtissue/sparse/supernodal_cholesky.hpp>
+
+#include <Eigen/SparseCholesky>
+
+#include <benchmark/benchmark.h>
+
+#ifdef SOFTTISSUE_HAS_CHOLMOD
+#include <Eigen/CholmodSupport>
+#endif
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace softtissue;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// Triangles of a tube, `around` x `along` columns.
+Triangles tube_triangles(Index around, Index along) {
+    Triangles triangles(3, 2 * around * (along - 1));
+    for (Index j = 0, t = 0; j + 1 < along; ++j) {
+        for (Index i = 0; i < around; ++i, t += 2) {
+            const auto column = [&](Index x, Index y) { return std::int32_t(y * around + x % around); };
+            triangles.col(t) << column(i, j), column(i + 1, j), column(i, j + 1);
+            triangles.col(t + 1) << column(i + 1, j), column(i + 1, j + 1), column(i, j + 1);
+        }
+    }
+    return triangles;
+}
+
+/// Three levels of vertices around a bone; the innermost is prescribed.
+struct Limb {
+    PrismLayers layers;
+    CellMesh<Prism6, double> mesh;
+    std::vector<std::int32_t> bone;
+
+    Limb(Index around, Index along) : layers{around * along, 2} {
+        mesh.cells = layers.prisms(tube_triangles(around, along));
+        mesh.rest_positions.resize(3, layers.num_vertices());
+        for (Index c = 0; c < layers.num_columns; ++c) {
+            const double angle = 2 * std::numbers::pi * double(c % around) / double(around);
+            for (Index level = 0; level < 3; ++level) {
+                const double radius = 0.03 + 0.01 * double(level);
+                mesh.rest_positions.col(layers.vertex(c, level)) << radius * std::cos(angle), radius * std::sin(angle),
+                    2 * std::numbers::pi * 0.04 / double(around) * double(c / around);
+            }
+            bone.push_back(std::int32_t(layers.vertex(c, 0)));
+        }
+    }
+};
+
+/// The paper's size: 26,752 free vertices.
+const Limb& limb() {
+    static const Limb result(64, 209);
+    return result;
+}
+
+/// 80,256 unknowns: springs of random 3x3 stiffness between all vertices that share a cell.
+const SparseMatrix& flesh_matrix() {
+    static const BlockMatrix<double> matrix = [] {
+        const CellMesh<Prism6, double>& mesh = limb().mesh;
+        const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
+        std::vector<std::vector<std::int32_t>> neighbours(size_t(prescribed.num_free()));
+        StencilAssembly<6, double>(mesh.cells, mesh.num_vertices()).add_neighbours(prescribed, neighbours);
+        const BlockPattern pattern(std::move(neighbours));
+        BlockMatrix<double> K(pattern);
+        RandomGenerator random(1);
+        for (Index v = 0; v < pattern.num_columns(); ++v) {
+            const std::int32_t own = pattern.rank(v, std::int32_t(v));
+            K.add(v, own, Matrix3<double>::Identity());
+            for (const std::int32_t u : pattern.rows(v)) {
+                if (u < v) {
+                    const Vector3<double> direction(random.normal(), random.normal(), random.normal());
+                    const Matrix3<double> block = direction * direction.transpose() + 0.1 * Matrix3<double>::Identity();
+                    K.add(v, own, block);
+                    K.add(u, pattern.rank(u, u), block);
+                    K.add(v, pattern.rank(v, u), -block);
+                    K.add(u, pattern.rank(u, std::int32_t(v)), -block);
+                }
+            }
+        }
+        return K;
+    }();
+    return matrix.matrix();
+}
+
+/// What each iteration of Newton's method pays: numbers change, the pattern stays.
+template <class Cholesky, class Scalar = double>
+void newton_system(benchmark::State& state) {
+    const Eigen::SparseMatrix<Scalar> A = flesh_matrix().cast<Scalar>();
+    Cholesky cholesky;
+    cholesky.analyzePattern(A);
+    const VectorX<Scalar> b = VectorX<Scalar>::LinSpaced(A.rows(), Scalar(1), Scalar(2));
+    VectorX<Scalar> x;
+    for (auto _ : state) {
+        cholesky.factorize(A);
+        x = cholesky.solve(b);
+        benchmark::DoNotOptimize(x.data());
+    }
+    state.counters["unknowns"] = double(A.rows());
+    state.counters["residual"] = double((A * x - b).norm() / b.norm());
+}
+
+template <class Cholesky>
+void analyze_flesh(benchmark::State& state) {
+    Cholesky cholesky;
+    for (auto _ : state) {
+        cholesky.analyzePattern(flesh_matrix());
+    }
+}
+
+const SparseMatrix& poisson_matrix() {
+    static const SparseMatrix matrix = [] {
+        const CellMesh<Prism6, double>& mesh = limb().mesh;
+        const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
+        const auto rest = RestOperators<Prism6, double>::at(mesh, mesh.rest_positions);
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Index c = 0; c < mesh.num_cells(); ++c) {
+            const Eigen::Matrix<double, 3, 6> g = rest.cell_gradients(c);
+            const Eigen::Matrix<double, 6, 6> K = rest.volumes(c) * g.transpose() * g;
+            for (int a = 0; a < 6; ++a) {
+                const std::int32_t row = prescribed.free_index(mesh.cells(a, c));
+                for (int b = 0; b < 6 && row != PrescribedVertices::prescribed; ++b) {
+                    const std::int32_t column = prescribed.free_index(mesh.cells(b, c));
+                    if (column != PrescribedVertices::prescribed) {
+                        entries.emplace_back(row, column, K(a, b));
+                    }
+                }
+            }
+        }
+        SparseMatrix A(prescribed.num_free(), prescribed.num_free());
+        A.setFromTriplets(entries.begin(), entries.end());
+        return A;
+    }();
+    return matrix;
+}
+
+template <class Scalar>
+void solve_poisson(benchmark::State& state) {
+    const CholeskyFactor<Scalar> factor(poisson_matrix(), "benchmark");
+    typename CholeskyFactor<Scalar>::RightHandSides y(4, factor.num_places());
+    const typename CholeskyFactor<Scalar>::RightHandSides b = CholeskyFactor<Scalar>::RightHandSides::Ones(4, y.cols());
+    for (auto _ : state) {
+        y = b;
+        factor.solve_in_place(y);
+        benchmark::DoNotOptimize(y.data());
+    }
+    state.counters["entries"] = double(factor.num_entries());
+    const double bytes = 2.0 * double(factor.num_entries()) * (double(sizeof(Scalar)) + 1.0);
+    state.counters["bytes/s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// As many bytes as a solve reads, twice: the limit.
+template <class Scalar>
+void read_factor(benchmark::State& state) {
+    const CholeskyFactor<Scalar> factor(poisson_matrix(), "benchmark");
+    const VectorX<Scalar> values =
+        VectorX<Scalar>::Ones(factor.num_entries() + factor.num_entries() / Index(sizeof(Scalar)));
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(values.sum());
+        benchmark::DoNotOptimize(values.sum());
+    }
+    const double bytes = 2.0 * double(values.size()) * double(sizeof(Scalar));
+    state.counters["bytes/s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+template <class Cholesky>
+void solve_poisson_with(benchmark::State& state) {
+    Cholesky cholesky;
+    cholesky.analyzePattern(poisson_matrix());
+    cholesky.factorize(poisson_matrix());
+    const MatrixX<double> b = MatrixX<double>::Ones(poisson_matrix().rows(), 3);
+    MatrixX<double> x(b.rows(), 3);
+    for (auto _ : state) {
+        x = cholesky.solve(b);
+        benchmark::DoNotOptimize(x.data());
+    }
+}
+
+/// A frame: targets to positions. Argument: threads.
+template <class Scalar>
+void poisson_frame(benchmark::State& state) {
+    const ThreadExecutor executor(int(state.range(0)));
+    CellMesh<Prism6, Scalar> mesh;
+    mesh.cells = limb().mesh.cells;
+    mesh.rest_positions = limb().mesh.rest_positions.template cast<Scalar>();
+    PoissonReconstruction<Prism6, Scalar> poisson(mesh, PrescribedVertices(mesh.num_vertices(), limb().bone));
+    Matrix3X<Scalar> targets, x = mesh.rest_positions;
+    poisson.gradients_into(x, targets);
+    for (auto _ : state) {
+        poisson.solve_into(targets, x, executor);
+        benchmark::DoNotOptimize(x.data());
+    }
+}
+
+/// The same by sparse matrices of Eigen: a product with G^T W and a solve.
+void poisson_frame_of_eigen(benchmark::State& state) {
+    const CellMesh<Prism6, double>& mesh = limb().mesh;
+    const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
+    const auto rest = RestOperators<Prism6, double>::at(mesh, mesh.rest_positions);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index c = 0; c < mesh.num_cells(); ++c) {
+        const Eigen::Matrix<double, 3, 6> g = rest.volumes(c) * rest.cell_gradients(c);
+        for (int a = 0; a < 6; ++a) {
+            const std::int32_t row = prescribed.free_index(mesh.cells(a, c));
+            for (int d = 0; d < 3 && row != PrescribedVertices::prescribed; ++d) {
+                entries.emplace_back(row, std::int32_t(3 * c + d), g(d, a));
+            }
+        }
+    }
+    Eigen::SparseMatrix<double, Eigen::RowMajor> gradient_transpose(prescribed.num_free(), 3 * mesh.num_cells());
+    gradient_transpose.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLLT<SparseMatrix> cholesky(poisson_matrix());
+    const MatrixX<double> targets = MatrixX<double>::Ones(3 * mesh.num_cells(), 3);
+    MatrixX<double> b(prescribed.num_free(), 3), x(prescribed.num_free(), 3);
+    for (auto _ : state) {
+        b.noalias() = gradient_transpose * targets;
+        x = cholesky.solve(b);
+        benchmark::DoNotOptimize(x.data());
+    }
+}
+
+BENCHMARK(solve_poisson<float>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson<double>)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_factor<float>)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_factor<double>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson_with<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(poisson_frame<float>)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(poisson_frame<double>)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(poisson_frame_of_eigen)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_system<SupernodalCholesky<float>, float>)->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_system<SupernodalCholesky<double>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_system<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(analyze_flesh<SupernodalCholesky<double>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(analyze_flesh<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
+
+#ifdef SOFTTISSUE_HAS_CHOLMOD
+
+/// CHOLMOD with one ordering, its workspaces kept from solve to solve.
+template <int kind, int ordering>
+class Cholmod {
+public:
+    Cholmod() {
+        cholmod_start(&common_);
+        common_.supernodal = kind;
+        common_.final_ll = 1;
+        common_.nmethods = 1;
+        common_.method[0].ordering = ordering;
+    }
+    Cholmod(const Cholmod&) = delete;
+    Cholmod& operator=(const Cholmod&) = delete;
+    ~Cholmod() {
+        cholmod_free_dense(&x_, &common_);
+        cholmod_free_dense(&y_, &common_);
+        cholmod_free_dense(&e_, &common_);
+        cholmod_free_factor(&factor_, &common_);
+        cholmod_finish(&common_);
+    }
+
+    void analyzePattern(const SparseMatrix& A) {
+        cholmod_sparse view = Eigen::viewAsCholmod(A.selfadjointView<Eigen::Lower>());
+        cholmod_free_factor(&factor_, &common_);
+        factor_ = cholmod_analyze(&view, &common_);
+    }
+    void factorize(const SparseMatrix& A) {
+        cholmod_sparse view = Eigen::viewAsCholmod(A.selfadjointView<Eigen::Lower>());
+        cholmod_factorize(&view, factor_, &common_);
+    }
+    Eigen::Map<const MatrixX<double>> solve(const MatrixX<double>& b) {
+        cholmod_dense view{};
+        view.nrow = view.d = size_t(b.rows());
+        view.ncol = size_t(b.cols());
+        view.nzmax = size_t(b.size());
+        view.x = const_cast<double*>(b.data());  // is only read
+        view.xtype = CHOLMOD_REAL;
+        view.dtype = CHOLMOD_DOUBLE;
+        cholmod_solve2(CHOLMOD_A, factor_, &view, nullptr, &x_, nullptr, &y_, &e_, &common_);
+        return {static_cast<const double*>(x_->x), b.rows(), b.cols()};
+    }
+
+private:
+    cholmod_common common_;
+    cholmod_factor* factor_ = nullptr;
+    cholmod_dense* x_ = nullptr;
+    cholmod_dense* y_ = nullptr;
+    cholmod_dense* e_ = nullptr;
+};
+
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(analyze_flesh<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(analyze_flesh<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
+
+#endif
+
+}  // namespace
