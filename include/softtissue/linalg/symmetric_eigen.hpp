@@ -38,12 +38,13 @@ Scalar& lower_entry(Eigen::Matrix<Scalar, N, N>& H, int i, int j) {
 /// Makes H(q, p), p < q, zero where `is_off`: H <- G^T H G, V <- V G; of H the lower triangle.
 template <class Scalar, class Mask, int N>
 void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& V, int p, int q) {
-    using std::abs;
+    using std::copysign;
     using std::sqrt;
     const Scalar zero(0), one(1);
-    const Scalar theta = (H(q, q) - H(p, p)) / (Scalar(2) * H(q, p));
-    const Scalar tangent = select(theta < zero, Scalar(-one), one) / (abs(theta) + sqrt(Scalar(theta * theta + one)));
-    const Scalar t = select(is_off, tangent, zero);
+    const Scalar difference = H(q, q) - H(p, p);
+    const Scalar twice = H(q, p) + H(q, p);
+    const Scalar root = sqrt(Scalar(difference * difference + twice * twice));
+    const Scalar t = select(is_off, Scalar(twice / (difference + copysign(root, difference))), zero);
     const Scalar c = one / sqrt(Scalar(t * t + one));
     const Scalar s = t * c;
     const auto turn = [&](Scalar& a, Scalar& b) {
@@ -68,18 +69,26 @@ void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Ma
 template <RealLanes Scalar, int N>
 SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
     constexpr int max_sweeps = 30;  // quadratic convergence: eight are enough, the rest is for denormals
-    Eigen::Matrix<Scalar, N, N> H = lower;
+    using std::abs;
+    using std::max;
+    using Limits = std::numeric_limits<RealOf<Scalar>>;
+    // With a largest entry of 1 no square leaves the range of the scalar.
+    const Scalar smallest(Limits::min());
+    Scalar scale = smallest;
+    for (int j = 0; j < N; ++j) {
+        for (int i = j; i < N; ++i) {
+            scale = max(scale, Scalar(abs(lower(i, j))));
+        }
+    }
+    Eigen::Matrix<Scalar, N, N> H = lower / scale;
     SymmetricEigen<Scalar, N> result;
     for (int j = 0; j < N; ++j) {
         for (int i = 0; i < N; ++i) {
             result.vectors(i, j) = i == j ? Scalar(1) : Scalar(0);
         }
     }
-    using std::abs;
-    using std::sqrt;
-    using Limits = std::numeric_limits<RealOf<Scalar>>;
     // below half an ulp of both diagonal entries a rotation changes nothing
-    const Scalar threshold(RealOf<Scalar>(0.25) * Limits::epsilon()), smallest(Limits::min());
+    const Scalar threshold(Limits::epsilon() * Limits::epsilon() / RealOf<Scalar>(16));
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool is_diagonal = true;
         // Planes (p, q) of one sum modulo N are disjoint: the processor need not wait for one to turn the next.
@@ -89,9 +98,9 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
                 if (q <= p) {
                     continue;
                 }
-                const Scalar off = abs(H(q, p));
-                const Scalar size = sqrt(Scalar(abs(H(p, p)))) * sqrt(Scalar(abs(H(q, q))));
-                const auto is_off = (off > threshold * size) & (off > smallest);
+                const Scalar squared = H(q, p) * H(q, p);
+                const Scalar size = abs(H(p, p) * H(q, q));
+                const auto is_off = (squared > threshold * size) & (squared > smallest);
                 if (any_of(is_off)) {
                     is_diagonal = false;
                     detail::jacobi_rotate(is_off, H, result.vectors, p, q);
@@ -103,7 +112,7 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
         }
     }
     for (int i = 0; i < N; ++i) {
-        result.values(i) = H(i, i);
+        result.values(i) = H(i, i) * scale;
     }
     return result;
 }
