@@ -11,7 +11,7 @@ using namespace softtissue;
 using namespace softtissue_test;
 
 TEST_CASE_TEMPLATE("cells come back from their lanes, the last one repeated", Types, std::pair<Tet4, double>,
-                   std::pair<Prism6, double>, std::pair<Prism6, float>) {
+                   std::pair<Prism6, float>) {
     using E = typename Types::first_type;
     using S = typename Types::second_type;
     using Rest = RestPacks<E, S>;
@@ -25,32 +25,37 @@ TEST_CASE_TEMPLATE("cells come back from their lanes, the last one repeated", Ty
     CHECK(rest.cell(0, 0) == 0);
     CHECK(rest.cell(rest.num_packs() - 1, Rest::width - 1) == count - 1);
 
-    const auto check = [&] {
+    const auto lanes_hold_their_cells = [&] {
+        bool all_same = true;
         for (Index pack = 0; pack < rest.num_packs(); ++pack) {
             const auto nodes = rest.gather(mesh.rest_positions, mesh.cells, pack);
+            const auto gradients = rest.packed_gradients(pack);
+            const auto references = rest.packed_reference_gradient(pack);
             for (int i = 0; i < Rest::width; ++i) {
                 const Index c = rest.cell(pack, i);
-                CHECK(rest.packed_volume(pack)[i] == rest.volume(c));
-                CHECK(lane(rest.packed_gradients(pack), i) == rest.gradients(c));
-                CHECK(lane(rest.packed_reference_gradient(pack), i) == rest.reference_gradient(c));
-                CHECK(lane(nodes, i) == mesh.rest_nodes(c));
+                all_same = all_same && rest.packed_volume(pack)[i] == rest.volume(c) &&
+                           lane(gradients, i) == rest.gradients(c) &&
+                           lane(references, i) == rest.reference_gradient(c) && lane(nodes, i) == mesh.rest_nodes(c);
             }
         }
+        return all_same;
     };
+    bool all_same = true;
     for (Index c = 0; c < count; ++c) {
-        CHECK(rest.volume(c) == plain.volumes(c));
-        CHECK(rest.gradients(c) == plain.cell_gradients(c));
-        CHECK(rest.reference_gradient(c) == Matrix3<S>::Identity());
+        all_same = all_same && rest.volume(c) == plain.volumes(c) && rest.gradients(c) == plain.cell_gradients(c) &&
+                   rest.reference_gradient(c) == Matrix3<S>::Identity();
     }
-    check();
+    CHECK(all_same);
+    CHECK(lanes_hold_their_cells());
 
     const Matrix3<S> F0 = Matrix3<S>::Constant(S(3));
     rest.set_reference_gradient(count - 1, F0);
     rest.set_cell(count - 1, S(2) * plain.cell_gradients(count - 1), S(7));
     rest.set_cell(3, -plain.cell_gradients(3), S(5));
-    CHECK(rest.reference_gradient(count - 1) == F0);
-    CHECK(rest.reference_gradient(0) == Matrix3<S>::Identity());
+    const bool only_the_last_changed =
+        rest.reference_gradient(count - 1) == F0 && rest.reference_gradient(0) == Matrix3<S>::Identity();
+    CHECK(only_the_last_changed);
     CHECK(rest.volume(3) == S(5));
     CHECK(rest.volume(count - 1) == S(7));
-    check();
+    CHECK(lanes_hold_their_cells());
 }
