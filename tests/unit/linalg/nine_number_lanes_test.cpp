@@ -5,8 +5,6 @@
 
 #include <cstddef>
 
-namespace nine_number_lanes_test {
-
 using namespace softtissue;
 
 TEST_CASE_TEMPLATE("every number goes to its lane, and back to its place", S, float, double) {
@@ -57,5 +55,3 @@ TEST_CASE("columns of any alignment") {
     }
     CHECK(numbers[0] == 0.0F);
 }
-
-}  // namespace nine_number_lanes_test

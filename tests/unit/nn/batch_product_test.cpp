@@ -9,9 +9,9 @@
 #include <cmath>
 #include <limits>
 
-namespace batch_product_test {
-
 using namespace softtissue;
+
+namespace {
 
 template <class S>
 struct Product {
@@ -31,6 +31,8 @@ struct Product {
         return y;
     }
 };
+
+}  // namespace
 
 TEST_CASE_TEMPLATE("sums of every length, rows and samples that fill no tile", S, float, double) {
     for (const Index depth : {1, 3, 4, 15, 16, 17, 37, 200}) {
@@ -68,5 +70,3 @@ TEST_CASE("a part of a larger array of results") {
     CHECK((y.row(0).array() == 0.5).all());
     CHECK((y.row(8).array() == 0.5).all());
 }
-
-}  // namespace batch_product_test
