@@ -60,6 +60,8 @@ struct LayeredBodyOptions {
     int weight_rounds = 16;
     /// A skin whose best cosine stays below this after the repair is refused.
     S smallest_cosine = S(0.1);
+    /// A body with a layer that is anywhere thinner than this is refused.
+    S thinnest = S(0.0001);
     /// Cosine of the ways to the targets with the skin's inward normals, where the skin allows it.
     S target_cosine = S(0.3);
     SkinRepairOptions<S> repair = {};
@@ -74,9 +76,12 @@ struct LayeredBodyOptions {
         require_positive(smallest_depth, "smallest_depth");
         require_positive(smallest_fat, "smallest_fat");
         require_positive(smallest_cosine, "smallest_cosine");
+        require_positive(thinnest, "thinnest");
         require_positive(target_cosine, "target_cosine");
         require_positive(flow.threshold, "flow.threshold");
         require_positive(cleanup.threshold, "cleanup.threshold");
+        require(cleanup.short_column >= S(0), "layered body: cleanup.short_column = ", cleanup.short_column,
+                ", expected >= 0");
         require(cleanup.largest_fat_fraction > S(0) && cleanup.largest_fat_fraction < S(1),
                 "layered body: cleanup.largest_fat_fraction = ", cleanup.largest_fat_fraction,
                 ", expected a value between 0 and 1");

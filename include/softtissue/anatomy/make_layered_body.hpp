@@ -9,7 +9,7 @@
 ///             (fat_thickness) -> both improved under a barrier (WrapCleanup) -> checked.
 /// Equation    depth at distance d from a cut:  cut + (full - cut) (3 s^2 - 2 s^3),  s = min(d / decay_distance, 1)
 /// Refuses     skin that is no closed surface; a skeleton other than the anatomy's; options out of range; skin that cannot be
-///             repaired; thicknesses given that cannot be built (InvalidInput names vertex, joint, what was asked and what is
+///             repaired or leaves no room in a fold; thicknesses given that cannot be built (InvalidInput names vertex, joint, what was asked and what is
 ///             possible).
 /// Source      Nolte et al. 2026, sections 3.1 and 4.1
 /// Departs     built from skin and skeleton alone, by targets and guarded steps, instead of a fit of scanned anatomy: any
@@ -87,6 +87,8 @@ public:
         WrapCleanup<S> cleanup(mesh_, skin_.positions, projected.points, fat_, options_.cleanup);
         report_.cleanup_sweeps = cleanup.improve(bone_, muscle_);
         measure();
+        refuse_thin("muscle", bone_, muscle_);
+        refuse_thin("fat", muscle_, skin_.positions);
         refuse_unbuilt(options_.fat_thickness, "fat_thickness", fat_, skin_.positions - muscle_);
         refuse_unbuilt(options_.bone_depth, "bone_depth",
                        (projected.points - skin_.positions).colwise().norm().transpose(), skin_.positions - bone_);
@@ -195,6 +197,14 @@ private:
         require(report_.muscle.inverted_cells + report_.fat.inverted_cells == 0,
                 "layered body: ", report_.muscle.inverted_cells, " muscle and ", report_.fat.inverted_cells,
                 " fat prisms are inverted, expected none");
+    }
+
+    void refuse_thin(const char* layer, const Matrix3X<S>& lower, const Matrix3X<S>& upper) const {
+        Index v = 0;
+        const S thickness = (upper - lower).colwise().norm().minCoeff(&v);
+        require(thickness >= options_.thinnest, "layered body: below body vertex ", region_.body_vertices[size_t(v)],
+                " (joint ", main_joint(v), ") the skin leaves ", thickness, " m for the ", layer,
+                ", expected >= ", options_.thinnest);
     }
 
     void refuse_unbuilt(const VectorX<S>& given, const char* name, const VectorX<S>& asked,

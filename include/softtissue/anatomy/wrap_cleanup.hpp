@@ -4,12 +4,14 @@
 ///
 /// What        WrapCleanup: bone wrap B and muscle wrap M under a barrier against bad prisms, near their targets.
 /// Equation    per vertex i:  sum over the prisms around, of both layers, of the PrismBarrier
+///             + sum over the edges at i from surface to surface that are shorter than L_0, of (L_0 / L - 1)^2
 ///             + w_T |B_i - T_i|^2 + w_L mean_j |e_i - e_j|^2  (e = B - T)   or   + w_M |M_i - (s_i + lambda_i (B_i - s_i))|^2,
 ///             lambda_i = min(fat_i / |B_i - s_i|, largest_fat_fraction).
 /// Method      Gauss-Seidel over the vertices in random order, B and M in turn: one Newton step with the 3x3 Hessian's
 ///             eigenvalues taken absolute, at most max_step long, halved until the energy falls. Stops when a sweep moves no
 ///             vertex by more than `negligible`.
-/// Valid       starts from positive coefficients and keeps them: the barrier is infinite elsewhere.
+/// Valid       starts from positive coefficients and keeps them: the barrier is infinite elsewhere. Coefficients do not feel
+///             how long a column is: but for L_0, layers would vanish below deep folds of the skin.
 /// Tests       tests/unit/anatomy/wrap_cleanup_test.cpp
 #pragma once
 
@@ -38,6 +40,7 @@ struct WrapCleanupOptions {
     S smoothing_weight = S(4e3);
     S fraction_weight = S(2e4);
     S largest_fat_fraction = S(0.45);
+    S short_column = S(0.0003);  // L_0: edges between two surfaces that are shorter are pushed apart
     S max_step = S(0.005);
     S negligible = S(1e-4);
     int max_sweeps = 30;
@@ -116,6 +119,7 @@ private:
         for_each_prism(wrap, v, [&](const Prism6::Nodes<S>& X, const Vector3<S>& inverse_sines, int node) {
             barrier_.add_derivatives(X, inverse_sines, node, gradient, hessian);
         });
+        for_each_column(wrap, v, [&](const Vector3<S>& way) { add_column_derivatives(way, gradient, hessian); });
         hessian.diagonal().array() += S(2) * spring.weight;
         Vector3<S> step = filtered<S, 3>(hessian, PsdFilter::absolute).llt().solve(-gradient);
         const S length = step.norm();
@@ -142,7 +146,32 @@ private:
         for_each_prism(wrap, v, [&](const Prism6::Nodes<S>& X, const Vector3<S>& inverse_sines, int) {
             sum += barrier_.energy(X, inverse_sines);
         });
+        for_each_column(wrap, v, [&](const Vector3<S>& way) {
+            const S excess = std::max(options_.short_column / way.norm() - S(1), S(0));
+            sum += excess * excess;
+        });
         return sum;
+    }
+
+    void add_column_derivatives(const Vector3<S>& way, Vector3<S>& gradient, Matrix3<S>& hessian) const {
+        const S length = way.norm(), ratio = options_.short_column / length;
+        if (ratio > S(1)) {
+            const Vector3<S> direction = way / length;
+            const S slope = S(-2) * (ratio - S(1)) * ratio / length;
+            const S curvature = S(2) * ratio * (S(3) * ratio - S(2)) / (length * length);
+            gradient += slope * direction;
+            hessian += (curvature - slope / length) * direction * direction.transpose();
+            hessian.diagonal().array() += slope / length;
+        }
+    }
+
+    /// Calls body(way to vertex v of `wrap` from the same vertex of the next surface).
+    template <class Body>
+    void for_each_column(const Matrix3X<S>& wrap, std::int32_t v, const Body& body) const {
+        body(Vector3<S>(wrap.col(v) - (&wrap == &muscle_ ? bone_ : muscle_).col(v)));
+        if (&wrap == &muscle_) {
+            body(Vector3<S>(wrap.col(v) - skin_.col(v)));
+        }
     }
 
     /// Calls body(nodes, inverse sines, node of v) for the prisms that contain vertex v of `wrap`.

@@ -152,6 +152,21 @@ TEST_CASE("real bodies in twenty random shapes" * doctest::skip()) {
     });
 }
 
+TEST_CASE("below a deep fold of the skin layers become thin, but do not vanish") {
+    for_each_real_body([](const std::string&, const SmplBody<double>& body) {
+        VectorX<double> beta = VectorX<double>::Zero(body.num_shapes());
+        beta.head(10) << 0.47, 0.58, -1.49, 3, 2.72, -1.97, 0.13, 3, 1.46, -2.29;  // folds below the breasts
+        const LayeredBodyReport<double> report = make_layered_body(shaped<double>(body, beta)).report;
+        CHECK(report.muscle.inverted_cells + report.fat.inverted_cells == 0);
+        CHECK(report.muscle.thinnest > 1.5e-4);
+        CHECK(report.fat.thinnest > 1.5e-4);
+    });
+    LayeredBodyOptions<double> options;
+    options.thinnest = 0.002;  // less than the cuts have
+    CHECK_MESSAGE(refusal(embedded_human(), options).find("for the fat, expected >= 0.002") != std::string::npos,
+                  refusal(embedded_human(), options));
+}
+
 TEST_CASE("a small change of the shape is a small change of the layers") {
     const SmplBody<double> changed = shaped<double>(embedded_human(), 0.02 * VectorX<double>::Unit(10, 0));
     const LayeredBody<double> before = make_layered_body(embedded_human());

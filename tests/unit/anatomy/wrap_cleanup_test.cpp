@@ -28,8 +28,8 @@ struct CleanupCapsule {
         }
     }
 
-    int improve(Matrix3X<S>& bone, Matrix3X<S>& muscle) const {
-        return WrapCleanup<S>(mesh, skin, targets, fat, {}).improve(bone, muscle);
+    int improve(Matrix3X<S>& bone, Matrix3X<S>& muscle, const WrapCleanupOptions<S>& options = {}) const {
+        return WrapCleanup<S>(mesh, skin, targets, fat, options).improve(bone, muscle);
     }
 
     S smallest_coefficient(const Matrix3X<S>& lower, const Matrix3X<S>& upper) const {
@@ -86,4 +86,17 @@ TEST_CASE_TEMPLATE("bad prisms become better and none is lost", S, float, double
     body.improve(again_bone, again_muscle);
     CHECK(again_bone == bone);
     CHECK(again_muscle == muscle);
+}
+
+TEST_CASE_TEMPLATE("no layer vanishes, whatever is wanted", S, float, double) {
+    CleanupCapsule<S> body;
+    body.fat.setConstant(S(1e-6));
+    const auto thinnest_fat = [&](const WrapCleanupOptions<S>& options) {
+        Matrix3X<S> bone = body.targets;
+        Matrix3X<S> muscle = (body.skin + bone) / S(2);
+        body.improve(bone, muscle, options);
+        return (body.skin - muscle).colwise().norm().minCoeff();
+    };
+    CHECK(thinnest_fat({}) > S(0.00025));
+    CHECK(thinnest_fat({.short_column = S(0)}) < S(1e-5));
 }
