@@ -3,9 +3,9 @@
 //
 // The embedded body in one pose, skinned in three ways: where they differ, and what each does to the volume.
 #include "support/color_scale.hpp"
+#include "support/embedded_human.hpp"
 #include "support/mesh_picture.hpp"
 
-#include <softtissue/model/procedural_human.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/inverse.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     app.add_option("--out", out, "folder for the picture")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
 
-    const SmplBody<double> body = procedural_human<double>();
+    const SmplBody<double> body = examples::embedded_human();
     Pose<double> pose = Pose<double>::rest(body.num_joints());
     pose.rotation_vectors.col(18) = Vector3<double>(0.0, -2.2, 0.0);   // left elbow bent
     pose.rotation_vectors.col(17) = Vector3<double>(1.4, 0.0, 0.6);    // right upper arm twisted and raised

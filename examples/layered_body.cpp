@@ -5,12 +5,12 @@
 // (Nolte et al. 2026, tables 1 and 3, fig. 9).
 #include "layered_body/figures.hpp"
 #include "support/direct_cholesky.hpp"
+#include "support/embedded_human.hpp"
 #include "support/layered_pictures.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/io/amass_file.hpp>
-#include <softtissue/model/procedural_motion.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <CLI/CLI.hpp>
@@ -81,7 +81,7 @@ int run_program(const Settings& settings) {
                  rest.fat.smallest_scaled_jacobian, int(scene.bones.embedding.num_points()),
                  int(scene.muscles.embedding.num_points()));
     const Motion<Scalar> motion = settings.motion.empty()
-                                      ? procedural_motion<Scalar>()
+                                      ? embedded_motion()
                                       : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
     const std::vector<Pose<Scalar>> poses = choose_poses(settings, motion);
     const ThreadExecutor executor(settings.threads);

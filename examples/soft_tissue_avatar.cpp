@@ -3,6 +3,7 @@
 //
 // A skinned body in motion with simulated soft tissue: Romero et al. 2020, from the body to pictures.
 #include "soft_tissue_avatar/scene.hpp"
+#include "support/embedded_human.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/anatomy/make_soft_layer.hpp>
@@ -10,9 +11,6 @@
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
 #include <softtissue/io/amass_file.hpp>
-#include <softtissue/io/smpl_file.hpp>
-#include <softtissue/model/procedural_human.hpp>
-#include <softtissue/model/procedural_motion.hpp>
 #include <softtissue/skinning/resample.hpp>
 
 #include <CLI/CLI.hpp>
@@ -36,10 +34,9 @@ Model make_skin(const Settings& settings, const SmplBody<Scalar>& body) {
 }
 
 Scene make_scene(const Settings& settings) {
-    SmplBody<Scalar> body =
-        settings.body.empty() ? procedural_human<Scalar>() : read_smpl_body<Scalar>(settings.body);
+    SmplBody<Scalar> body = read_human(settings.body);
     const Motion<Scalar> recorded = settings.motion.empty()
-                                        ? procedural_motion<Scalar>()
+                                        ? embedded_motion()
                                         : read_amass_motion<Scalar>(settings.motion, body.num_joints());
     Motion<Scalar> motion = resample(recorded, 1.0 / settings.time_step);
     if (settings.frames > 0 && settings.frames < motion.num_frames()) {

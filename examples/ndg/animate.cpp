@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "animate.hpp"
 
+#include "../support/embedded_human.hpp"
 #include "../support/layered_pictures.hpp"
 #include "../support/progress.hpp"
 
@@ -8,7 +9,6 @@
 #include <softtissue/io/amass_file.hpp>
 #include <softtissue/io/neural_model_file.hpp>
 #include <softtissue/metric/volume_change.hpp>
-#include <softtissue/model/procedural_motion.hpp>
 #include <softtissue/ndg/neural_animation.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
@@ -59,7 +59,7 @@ void animate(const Settings& settings) {
     const Scene scene = make_scene(
         settings.files, Eigen::Map<const VectorX<Scalar>>(settings.betas.data(), Index(settings.betas.size())));
     const Motion<Scalar> motion = settings.motion.empty()
-                                      ? procedural_motion<Scalar>()
+                                      ? embedded_motion()
                                       : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
     const ThreadExecutor executor(settings.threads);
     const LayeredBody<Scalar>& layered = scene.layered;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "generate.hpp"
 
+#include "../support/embedded_human.hpp"
 #include "../support/progress.hpp"
 #include "../support/shard.hpp"
 #include "compute_samples.hpp"
@@ -122,7 +123,7 @@ void generate(const Settings& settings) {
     const MpiShard mpi;
     const Shard shard = settings.shard.empty() ? mpi.shard() : parse_shard(settings.shard);
     watch_interrupt();
-    const SmplBody<double> body = read_body(settings.body);
+    const SmplBody<double> body = read_human(settings.body);
     const std::vector<DatasetClip> clips = read_clips(settings.motions, settings.test_motions, body.num_joints());
     const Index shapes = std::min(settings.shapes, body.num_shapes());
     GenerationOptions options{.threads = settings.threads, .shard = shard.index, .num_shards = shard.count};

@@ -2,20 +2,13 @@
 #include "inputs.hpp"
 
 #include "../support/amass_motion.hpp"
-
-#include <softtissue/io/smpl_file.hpp>
-#include <softtissue/model/procedural_human.hpp>
-#include <softtissue/model/procedural_motion.hpp>
+#include "../support/embedded_human.hpp"
 
 #include <filesystem>
 
 namespace examples {
 
 using namespace softtissue;
-
-SmplBody<double> read_body(const std::string& path) {
-    return path.empty() ? procedural_human<double>() : read_smpl_body<double>(path);
-}
 
 BodyFunction layered_bodies(const SmplBody<double>& body) {
     return ShapedBodyMaker<double>(body);
@@ -26,12 +19,12 @@ std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const
     std::vector<DatasetClip> clips;
     for (const auto* list : {&paths, &held_out}) {
         for (const std::string& path : *list) {
-            clips.push_back({std::filesystem::path(path).stem().string(), read_motion(path, num_joints),
-                             list == &held_out});
+            clips.push_back(
+                {std::filesystem::path(path).stem().string(), read_motion(path, num_joints), list == &held_out});
         }
     }
     if (clips.empty()) {
-        clips.push_back({"procedural", procedural_motion<double>()});
+        clips.push_back({"procedural", embedded_motion()});
     }
     return clips;
 }

@@ -13,9 +13,6 @@
 
 namespace examples {
 
-/// The body in a file of SMPL's layout; the embedded one if the path is empty.
-softtissue::SmplBody<double> read_body(const std::string& path);
-
 /// From shape coefficients to layered bodies.
 using BodyFunction = std::function<softtissue::ShapedBody<double>(const softtissue::VectorX<double>&)>;
 

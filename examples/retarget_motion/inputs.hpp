@@ -4,12 +4,12 @@
 #pragma once
 
 #include "../support/amass_motion.hpp"
+#include "../support/embedded_human.hpp"
 
 #include <softtissue/io/bvh.hpp>
 #include <softtissue/io/npz.hpp>
 #include <softtissue/io/smpl_file.hpp>
 #include <softtissue/model/human_solid.hpp>
-#include <softtissue/model/procedural_motion.hpp>
 #include <softtissue/skinning/joint_map.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
@@ -43,7 +43,7 @@ inline BvhClip<double> read_amass(const std::string& motion, bool z_up, const st
                                   const Skeleton<double>& body) {
     BvhClip<double> clip{body, {}, {}};
     if (motion.empty()) {
-        clip.motion = procedural_motion<double>();
+        clip.motion = embedded_motion();
         return clip;
     }
     clip.motion = read_motion(motion, body.num_joints());

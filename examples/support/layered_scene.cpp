@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "layered_scene.hpp"
 
+#include "embedded_human.hpp"
+
 #include <softtissue/anatomy/make_layered_body.hpp>
 #include <softtissue/io/obj.hpp>
-#include <softtissue/io/smpl_file.hpp>
 #include <softtissue/model/procedural_anatomy.hpp>
-#include <softtissue/model/procedural_human.hpp>
 
 #include <utility>
 #include <vector>
@@ -50,7 +50,7 @@ Scene::Frame Scene::frame(const Pose<Scalar>& pose, const Matrix3X<Scalar>& x) c
 }
 
 SmplBody<Scalar> shaped_body(const std::string& file, const VectorX<Scalar>& betas) {
-    SmplBody<Scalar> body = file.empty() ? procedural_human<Scalar>() : read_smpl_body<Scalar>(file);
+    SmplBody<Scalar> body = read_human(file);
     if (betas.size() > 0) {
         body.template_vertices = VolumetricSmpl<Scalar>(body).rest_shape(betas);
     }
