@@ -59,6 +59,10 @@ if(SOFTTISSUE_NATIVE)
     endif()
 endif()
 
+# What nearly every source includes is compiled once.
+option(SOFTTISSUE_PRECOMPILE "Precompile the headers that tests share, and those that examples share" ON)
+set(softtissue_PRECOMPILED <Eigen/Core> <algorithm> <cmath> <limits> <span> <sstream> <string> <vector>)
+
 # What of the library compiles here: the headers, as `softtissue/...hpp`, that need Eigen only, and those that need more if
 # all of it is present.
 set(softtissue_USABLE_CORE_HEADERS ${core_headers})

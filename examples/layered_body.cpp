@@ -4,13 +4,11 @@
 // A layered anatomical body in many poses: the quasi-static reference beside the methods that avoid its cost
 // (Nolte et al. 2026, tables 1 and 3, fig. 9).
 #include "layered_body/figures.hpp"
-#include "support/direct_cholesky.hpp"
 #include "support/embedded_human.hpp"
 #include "support/layered_pictures.hpp"
+#include "support/posing_methods.hpp"
 #include "support/progress.hpp"
 
-#include <softtissue/core/thread_executor.hpp>
-#include <softtissue/io/amass_file.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <CLI/CLI.hpp>
@@ -30,11 +28,6 @@ struct Settings {
     int threads = 1;
     std::string out = "layered_body", json;
 };
-
-AnimationMethod method_of(const std::string& name) {
-    return *std::find_if(all_animation_methods.begin(), all_animation_methods.end(),
-                         [&](AnimationMethod method) { return name == to_string(method); });
-}
 
 /// Evenly spaced frames of the motion, not turned as a whole; with a seed random ones, their joints turned at random besides.
 std::vector<Pose<Scalar>> choose_poses(const Settings& settings, const Motion<Scalar>& motion) {
@@ -80,12 +73,9 @@ int run_program(const Settings& settings) {
                  int(rest.muscle.inverted_cells + rest.fat.inverted_cells), rest.muscle.smallest_scaled_jacobian,
                  rest.fat.smallest_scaled_jacobian, int(scene.bones.embedding.num_points()),
                  int(scene.muscles.embedding.num_points()));
-    const Motion<Scalar> motion = settings.motion.empty()
-                                      ? embedded_motion()
-                                      : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
+    const Motion<Scalar> motion = read_human_motion(settings.motion, scene.body.num_joints());
     const std::vector<Pose<Scalar>> poses = choose_poses(settings, motion);
-    const ThreadExecutor executor(settings.threads);
-    LayeredAnimation<Scalar, ThreadExecutor, DirectCholesky> layered_animation(scene.layered, {}, executor);
+    PosingMethods methods(scene.layered, {}, settings.threads);
     Animation animation(scene, settings.methods, std::max(1.0, double(poses.size()) / motion.duration()));
 
     Figures figures;
@@ -104,21 +94,19 @@ int run_program(const Settings& settings) {
         for (size_t k = 0; k < settings.methods.size() && !is_interrupted(); ++k) {
             const AnimationMethod method = method_of(settings.methods[k]);
             const double begin = seconds();
-            const SolveReport<Scalar> report = layered_animation.pose_into(
-                method, transforms, x, quasi_static_options<Scalar>(),
-                [](const NewtonProgress<Scalar>&) { return !is_interrupted(); });
+            const SolveReport<Scalar> report = methods.pose_into(method, transforms, x);
             const double milliseconds = 1e3 * (seconds() - begin);
             if (report.status == SolveStatus::cancelled) {
                 break;
             }
             if (method == AnimationMethod::fem) {
                 reference = x;
-                if (layered_animation.start_dependence(transforms, x) > start_tolerance) {
+                if (methods.start_dependence(transforms, x) > start_tolerance) {
                     figures.start_dependent_poses.push_back(figures.poses);
                 }
             }
             Scene::Frame frame = scene.frame(pose, x);
-            add_pose(figures.methods[k], scene, layered_animation.poisson().rest(), layered_animation.poisson().prescribed(),
+            add_pose(figures.methods[k], scene, methods.poisson().rest(), methods.poisson().prescribed(),
                      x, figures.has_reference ? &reference : nullptr, report, frame, milliseconds);
             animation.add(k, frame);
             shots.push_back(make_shot(settings.methods[k], scene, x, std::move(frame)));

@@ -10,7 +10,6 @@
 #include <softtissue/avatar/tissue_model.hpp>
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
-#include <softtissue/io/amass_file.hpp>
 #include <softtissue/skinning/resample.hpp>
 
 #include <CLI/CLI.hpp>
@@ -35,9 +34,7 @@ Model make_skin(const Settings& settings, const SmplBody<Scalar>& body) {
 
 Scene make_scene(const Settings& settings) {
     SmplBody<Scalar> body = read_human(settings.body);
-    const Motion<Scalar> recorded = settings.motion.empty()
-                                        ? embedded_motion()
-                                        : read_amass_motion<Scalar>(settings.motion, body.num_joints());
+    const Motion<Scalar> recorded = read_human_motion(settings.motion, body.num_joints());
     Motion<Scalar> motion = resample(recorded, 1.0 / settings.time_step);
     if (settings.frames > 0 && settings.frames < motion.num_frames()) {
         motion.poses.resize(size_t(settings.frames));

@@ -3,15 +3,12 @@
 
 #include "../support/embedded_human.hpp"
 #include "../support/layered_pictures.hpp"
+#include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
+#include "inputs.hpp"
 
-#include <softtissue/core/thread_executor.hpp>
-#include <softtissue/io/amass_file.hpp>
-#include <softtissue/io/neural_model_file.hpp>
 #include <softtissue/metric/volume_change.hpp>
-#include <softtissue/ndg/neural_animation.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
-#include <softtissue/solver/poisson_reconstruction.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -55,18 +52,13 @@ Frames choose_frames(const Settings& settings, const Motion<Scalar>& motion) {
 
 void animate(const Settings& settings) {
     watch_interrupt();
-    const NeuralModel<float> model = read_neural_model<float>(settings.model);
+    const NeuralModel<float> model = read_model(settings.model);
     const Scene scene = make_scene(
         settings.files, Eigen::Map<const VectorX<Scalar>>(settings.betas.data(), Index(settings.betas.size())));
-    const Motion<Scalar> motion = settings.motion.empty()
-                                      ? embedded_motion()
-                                      : read_amass_motion<Scalar>(settings.motion, scene.body.num_joints());
-    const ThreadExecutor executor(settings.threads);
+    const Motion<Scalar> motion = read_human_motion(settings.motion, scene.body.num_joints());
     const LayeredBody<Scalar>& layered = scene.layered;
-    PoissonReconstruction<Prism6, Scalar> poisson(layered.mesh,
-                                                  PrescribedVertices(layered.mesh.num_vertices(), layered.prescribed));
-    NeuralAnimation<Scalar, ThreadExecutor> network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson,
-                                                    executor);
+    Poisson poisson = make_poisson(layered);
+    PosingNetwork network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson, settings.threads);
 
     const Frames frames = choose_frames(settings, motion);
     const Index num_shots = std::min<Index>(settings.shots, frames.count);

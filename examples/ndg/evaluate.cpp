@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "evaluate.hpp"
 
+#include "../support/embedded_human.hpp"
 #include "../support/progress.hpp"
 #include "error_picture.hpp"
 #include "evaluation_run.hpp"
 #include "evaluation_tables.hpp"
-
-#include <softtissue/io/neural_model_file.hpp>
-#include <softtissue/io/smpl_file.hpp>
+#include "inputs.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -41,7 +40,7 @@ EvaluationSetup read_setup(const Settings& settings) {
     EvaluationSetup setup{
         .models = {}, .methods = settings.methods, .threads = settings.threads, .max_samples = settings.max_samples};
     for (const std::string& file : settings.models) {
-        setup.models.push_back({{}, file, read_neural_model<float>(file)});
+        setup.models.push_back({{}, file, read_model(file)});
     }
     for (EvaluatedModel& model : setup.models) {
         const auto has_this_name = [&](const EvaluatedModel& other) { return other.model.name == model.model.name; };
@@ -73,9 +72,8 @@ void write_pictures(const Settings& settings, const DatasetFolder& data, const E
     if (maps.empty()) {
         return;
     }
-    const ErrorSurface surface = settings.body.empty()
-                                     ? layered_surface(data.mean_body())
-                                     : whole_surface(data.mean_body(), read_smpl_body<double>(settings.body));
+    const ErrorSurface surface = settings.body.empty() ? layered_surface(data.mean_body())
+                                                       : whole_surface(data.mean_body(), read_human(settings.body));
     const std::filesystem::path path =
         std::filesystem::path(settings.out) / ("errors_" + std::string(to_string(split.split)) + ".png");
     const std::string title = "Error of each vertex, " + std::to_string(split.samples.size()) +

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation_run.hpp"
 
-#include "../support/direct_cholesky.hpp"
+#include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
 
-#include <softtissue/ndg/layered_animation.hpp>
-#include <softtissue/ndg/neural_animation.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <algorithm>
@@ -31,11 +29,6 @@ struct MeasuredPose {
     std::optional<double> smallest_determinant = {};
 };
 
-AnimationMethod method_of(const std::string& name) {
-    return *std::find_if(all_animation_methods.begin(), all_animation_methods.end(),
-                         [&](AnimationMethod method) { return name == to_string(method); });
-}
-
 /// The flesh that the data set was made with.
 FleshParameters<double> flesh_of(const DatasetFolder& data) {
     const nlohmann::ordered_json& flesh = data.definition().at("flesh");
@@ -52,10 +45,10 @@ FleshParameters<double> flesh_of(const DatasetFolder& data) {
 class BodyEvaluation {
 public:
     BodyEvaluation(const DatasetFolder& data, Index body, const EvaluationSetup& setup)
-        : data_(data), setup_(setup), body_(data.body(body)), animation_(body_.layered, flesh_of(data), executor_) {
+        : data_(data), setup_(setup), body_(data.body(body)), methods_(body_.layered, flesh_of(data), 1) {
         for (const EvaluatedModel& model : setup.models) {
-            networks_.push_back(std::make_unique<Network>(model.model, body_.layered, data.tree(), data.joint_names(),
-                                                          animation_.poisson(), executor_));
+            networks_.push_back(std::make_unique<PosingNetwork>(model.model, body_.layered, data.tree(),
+                                                                data.joint_names(), methods_.poisson(), 1));
         }
     }
 
@@ -77,7 +70,7 @@ public:
         }
         for (const std::string& name : setup_.methods) {
             const double begin = seconds();
-            const SolveReport<double> report = animation_.pose_into(method_of(name), transforms, x);
+            const SolveReport<double> report = methods_.pose_into(method_of(name), transforms, x);
             const double time = 1e3 * (seconds() - begin);
             result.push_back(measured(x, sample.positions, time));
             result.back().has_converged = report.succeeded();
@@ -86,10 +79,8 @@ public:
     }
 
 private:
-    using Network = NeuralAnimation<double, SequentialExecutor>;
-
     MeasuredPose measured(const Matrix3X<double>& x, const Matrix3X<double>& reference, double milliseconds) {
-        const PoissonReconstruction<Prism6, double>& poisson = animation_.poisson();
+        const Poisson& poisson = methods_.poisson();
         MeasuredPose result;
         result.figures = measure_pose(body_.layered.mesh, poisson.rest(), poisson.prescribed(), x, reference);
         result.figures.milliseconds = milliseconds;
@@ -104,10 +95,9 @@ private:
 
     const DatasetFolder& data_;
     const EvaluationSetup& setup_;
-    SequentialExecutor executor_;
     ShapedBody<double> body_;
-    LayeredAnimation<double, SequentialExecutor, DirectCholesky> animation_;
-    std::vector<std::unique_ptr<Network>> networks_;
+    PosingMethods methods_;
+    std::vector<std::unique_ptr<PosingNetwork>> networks_;
 };
 
 /// Samples of one body, which one worker takes together.

@@ -4,6 +4,8 @@
 #include "../support/amass_motion.hpp"
 #include "../support/embedded_human.hpp"
 
+#include <softtissue/io/neural_model_file.hpp>
+
 #include <filesystem>
 
 namespace examples {
@@ -27,6 +29,10 @@ std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const
         clips.push_back({"procedural", embedded_motion()});
     }
     return clips;
+}
+
+NeuralModel<float> read_model(const std::string& path) {
+    return read_neural_model<float>(path);
 }
 
 }  // namespace examples

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// Bodies and motions that the subcommands start from.
+/// Bodies, motions and models that the subcommands start from.
 #pragma once
 
 #include <softtissue/ndg/dataset_plan.hpp>
+#include <softtissue/ndg/neural_model.hpp>
 #include <softtissue/ndg/shaped_body.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 
@@ -22,5 +23,7 @@ BodyFunction layered_bodies(const softtissue::SmplBody<double>& body);
 /// The motions in files of AMASS's layout, the second ones held out; the embedded one if there are none.
 std::vector<softtissue::DatasetClip> read_clips(const std::vector<std::string>& paths,
                                                 const std::vector<std::string>& held_out, softtissue::Index num_joints);
+
+softtissue::NeuralModel<float> read_model(const std::string& path);
 
 }  // namespace examples

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "embedded_human.hpp"
 
+#include <softtissue/io/amass_file.hpp>
 #include <softtissue/io/smpl_file.hpp>
 #include <softtissue/model/procedural_human.hpp>
 #include <softtissue/model/procedural_motion.hpp>
@@ -17,6 +18,10 @@ softtissue::Motion<double> embedded_motion() {
 
 softtissue::SmplBody<double> read_human(const std::string& path) {
     return path.empty() ? embedded_human() : softtissue::read_smpl_body<double>(path);
+}
+
+softtissue::Motion<double> read_human_motion(const std::string& path, softtissue::Index num_joints) {
+    return path.empty() ? embedded_motion() : softtissue::read_amass_motion<double>(path, num_joints);
 }
 
 }  // namespace examples
