@@ -16,7 +16,7 @@ namespace {
 
 using namespace softtissue;
 
-constexpr double position_tolerance = 1e-6;
+constexpr double trajectory_tolerance = 1e-6;
 
 /// Row `n` of an (S + 1, k, 3) array, 3 x k.
 Matrix3X<double> time_slice(const VectorX<double>& values, Index n, Index count) {
@@ -56,7 +56,7 @@ void check_trajectory(const ReferenceCase& reference, Field field, Checklist& ch
         most_iterations = std::max(most_iterations, report.iterations);
         worst = std::max(worst, (euler.state().positions - time_slice(x, n, X.cols())).colwise().norm().maxCoeff());
     }
-    checks.add(reference.name, "trajectory / box", worst / box_size(X), position_tolerance);
+    checks.add(reference.name, "trajectory / box", worst / box_size(X), trajectory_tolerance);
     checks.add(reference.name, "steps not converged", double(failed), 0.0);
     std::printf("%-28s %d steps, at most %d Newton iterations\n", reference.name.c_str(), int(num_steps), most_iterations);
 }

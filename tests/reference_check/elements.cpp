@@ -12,7 +12,7 @@ namespace {
 
 using namespace softtissue;
 
-constexpr double tolerance = 1e-12;
+constexpr double element_tolerance = 1e-12;
 
 /// Rows r .. r + n - 1 of an array read as rows of `width` numbers, as columns.
 template <int n>
@@ -39,9 +39,9 @@ struct CellErrors {
     }
 
     void report(const ReferenceCase& reference, Checklist& checks) const {
-        checks.add(reference.name, "volume", volume, tolerance);
-        checks.add(reference.name, "gradient operator", operator_error, tolerance);
-        checks.add(reference.name, "deformation gradient", deformation_gradient, tolerance);
+        checks.add(reference.name, "volume", volume, element_tolerance);
+        checks.add(reference.name, "gradient operator", operator_error, element_tolerance);
+        checks.add(reference.name, "deformation gradient", deformation_gradient, element_tolerance);
     }
 };
 
@@ -92,12 +92,12 @@ void check_prism(const ReferenceCase& reference, Checklist& checks) {
         }
     }
     errors.report(reference, checks);
-    checks.add(reference.name, "shape integrals / volume", integral, tolerance);
-    checks.add(reference.name, "position", position, tolerance);
-    checks.add(reference.name, "shape values", value, tolerance);
-    checks.add(reference.name, "shape gradients", gradient, tolerance);
+    checks.add(reference.name, "shape integrals / volume", integral, element_tolerance);
+    checks.add(reference.name, "position", position, element_tolerance);
+    checks.add(reference.name, "shape values", value, element_tolerance);
+    checks.add(reference.name, "shape gradients", gradient, element_tolerance);
     // stored coordinates are the constructing ones: up to 1e-12 from the inverse of the rounded point
-    checks.add(reference.name, "inverse map", inverse, 2.0 * tolerance);
+    checks.add(reference.name, "inverse map", inverse, 2.0 * element_tolerance);
 }
 
 }  // namespace reference_check

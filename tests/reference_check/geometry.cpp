@@ -17,7 +17,7 @@ namespace {
 
 using namespace softtissue;
 
-constexpr double tolerance = 1e-10;
+constexpr double geometry_tolerance = 1e-10;
 
 /// The stored Laplacian has a negative diagonal; ours is positive semi-definite.
 void check_laplacian(const ReferenceCase& reference, const Eigen::SparseMatrix<double>& laplacian, Checklist& checks) {
@@ -31,11 +31,11 @@ void check_laplacian(const ReferenceCase& reference, const Eigen::SparseMatrix<d
     expected.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SparseMatrix<double> difference = laplacian - expected;
     checks.add(reference.name, "cotangent Laplacian",
-               difference.coeffs().cwiseAbs().maxCoeff() / values.cwiseAbs().maxCoeff(), tolerance);
+               difference.coeffs().cwiseAbs().maxCoeff() / values.cwiseAbs().maxCoeff(), geometry_tolerance);
 }
 
-void check_interpolation(const ReferenceCase& reference, const Eigen::SparseMatrix<double>& energy, const char* quantity,
-                         const char* expected, double allowed, Checklist& checks) {
+void check_interpolation(const ReferenceCase& reference, const Eigen::SparseMatrix<double>& energy,
+                         const char* quantity, const char* expected, double allowed, Checklist& checks) {
     const VectorX<std::int32_t> prescribed = reference.file.at("b").vector<std::int32_t>();
     const HarmonicInterpolation<double> interpolation(energy, {prescribed.data(), size_t(prescribed.size())});
     checks.add(reference.name, quantity,
@@ -53,12 +53,14 @@ void check_triangle_geometry(const ReferenceCase& reference, Checklist& checks) 
     const VectorX<double> masses = voronoi_masses(V, F);
     check_laplacian(reference, laplacian, checks);
     checks.add(reference.name, "Voronoi masses",
-               relative_difference(masses, reference.file.at("M_voronoi").vector<double>()), tolerance);
+               relative_difference(masses, reference.file.at("M_voronoi").vector<double>()), geometry_tolerance);
     checks.add(reference.name, "barycentric masses",
-               relative_difference(barycentric_masses(V, F), reference.file.at("M_barycentric").vector<double>()), tolerance);
-    check_interpolation(reference, laplacian, "harmonic interpolation", "harmonic", tolerance, checks);
+               relative_difference(barycentric_masses(V, F), reference.file.at("M_barycentric").vector<double>()),
+               geometry_tolerance);
+    check_interpolation(reference, laplacian, "harmonic interpolation", "harmonic", geometry_tolerance, checks);
     // the bilaplacian squares the condition number
-    check_interpolation(reference, bilaplacian(laplacian, masses), "biharmonic interpolation", "biharmonic", 1e-8, checks);
+    check_interpolation(reference, bilaplacian(laplacian, masses), "biharmonic interpolation", "biharmonic", 1e-8,
+                        checks);
 }
 
 void check_tet_geometry(const ReferenceCase& reference, Checklist& checks) {
@@ -66,8 +68,9 @@ void check_tet_geometry(const ReferenceCase& reference, Checklist& checks) {
     const Eigen::SparseMatrix<double> laplacian = cotangent_laplacian(mesh);
     check_laplacian(reference, laplacian, checks);
     checks.add(reference.name, "barycentric masses",
-               relative_difference(barycentric_masses(mesh), reference.file.at("M_barycentric").vector<double>()), tolerance);
-    check_interpolation(reference, laplacian, "harmonic interpolation", "harmonic", tolerance, checks);
+               relative_difference(barycentric_masses(mesh), reference.file.at("M_barycentric").vector<double>()),
+               geometry_tolerance);
+    check_interpolation(reference, laplacian, "harmonic interpolation", "harmonic", geometry_tolerance, checks);
 }
 
 }  // namespace reference_check

@@ -18,7 +18,7 @@ namespace {
 
 using namespace softtissue;
 
-constexpr double tolerance = 1e-10;
+constexpr double shell_tolerance = 1e-10;
 
 template <class Term>
 void check_term(const ReferenceCase& reference, Term& term, const Matrix3X<double>& d, const std::string& prefix,
@@ -26,12 +26,15 @@ void check_term(const ReferenceCase& reference, Term& term, const Matrix3X<doubl
     const SequentialExecutor executor;
     Objective objective(PrescribedVertices(d.cols(), {}), executor, term);
     const double energy = reference.scalar((prefix + "_energy").c_str());
-    checks.add(reference.name, (prefix + " energy").c_str(), std::abs(objective.energy(d) - energy) / energy, tolerance);
+    checks.add(reference.name, (prefix + " energy").c_str(), std::abs(objective.energy(d) - energy) / energy,
+               shell_tolerance);
     checks.add(reference.name, (prefix + " gradient").c_str(),
-               relative_difference(objective.full_gradient(d), reference.points((prefix + "_grad").c_str())), tolerance);
+               relative_difference(objective.full_gradient(d), reference.points((prefix + "_grad").c_str())),
+               shell_tolerance);
     const MatrixX<double> hessian = objective.hessian(d, PsdFilter::none).matrix().toDense();
     checks.add(reference.name, (prefix + " Hessian").c_str(),
-               relative_difference(hessian, reference.file.at((prefix + "_hess").c_str()).matrix<double>()), tolerance);
+               relative_difference(hessian, reference.file.at((prefix + "_hess").c_str()).matrix<double>()),
+               shell_tolerance);
 }
 
 /// The reference may run through an edge the other way: the angle does not depend on it.
@@ -58,9 +61,10 @@ void check_shell(const ReferenceCase& reference, Checklist& checks) {
     HingeBending<DihedralDifference<double>> bending(surface, X, 1.0);
     EdgeStretch<double> stretch(surface, X, 1.0);
     const Connectivity<4> quads = reference.file.at("quads").columns<std::int32_t, 4>();
-    checks.add(reference.name, "angles", angle_error(bending, d, quads, reference.flat("theta")), tolerance);
+    checks.add(reference.name, "angles", angle_error(bending, d, quads, reference.flat("theta")), shell_tolerance);
     checks.add(reference.name, "rest angles",
-               angle_error(bending, Matrix3X<double>::Zero(3, X.cols()), quads, reference.flat("theta0")), tolerance);
+               angle_error(bending, Matrix3X<double>::Zero(3, X.cols()), quads, reference.flat("theta0")),
+               shell_tolerance);
     check_term(reference, bending, d, "bend", checks);
     check_term(reference, stretch, d, "stretch", checks);
 }

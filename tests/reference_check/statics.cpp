@@ -18,7 +18,7 @@ using namespace softtissue;
 
 // Energies, forces and products with stiffness at a random state far from equilibrium: sums of exact cell values.
 constexpr double assembly_tolerance = 1e-11;
-constexpr double position_tolerance = 1e-7;
+constexpr double equilibrium_tolerance = 1e-7;
 
 template <class ElementType, class Field>
 void check_assembly(const ReferenceCase& reference, ElasticEnergy<ElementType, Field>& elastic, const Matrix3X<double>& X,
@@ -62,7 +62,7 @@ void check_static(const ReferenceCase& reference, const Connectivity<ElementType
     const Matrix3X<double> x = X + d;
     checks.add(reference.name, report.succeeded() ? "equilibrium / box" : to_string(report.status),
                report.succeeded() ? (x - reference.points("x")).colwise().norm().maxCoeff() / box_size(X) : 1.0,
-               position_tolerance);
+               equilibrium_tolerance);
     const double energy = reference.scalar("energy");
     checks.add(reference.name, "elastic energy", std::abs(elastic.energy(d, executor) - energy) / std::abs(energy), 1e-9);
     std::printf("%-28s %d Newton iterations, %d of them filtered\n", reference.name.c_str(), report.iterations,
