@@ -88,6 +88,11 @@ const SmplBody<double>& embedded_human() {
     return body;
 }
 
+const LayeredBody<double>& embedded_layers() {
+    static const LayeredBody<double> layered = make_layered_body(embedded_human());
+    return layered;
+}
+
 std::string refusal(const SmplBody<double>& body, const LayeredBodyOptions<double>& options = {}) {
     try {
         static_cast<void>(make_layered_body(body, options));
@@ -169,7 +174,7 @@ TEST_CASE("below a deep fold of the skin layers become thin, but do not vanish")
 
 TEST_CASE("a small change of the shape is a small change of the layers") {
     const SmplBody<double> changed = shaped<double>(embedded_human(), 0.02 * VectorX<double>::Unit(10, 0));
-    const LayeredBody<double> before = make_layered_body(embedded_human());
+    const LayeredBody<double>& before = embedded_layers();
     const LayeredBody<double> after = make_layered_body(changed);
     const double skin = (after.level_positions(2) - before.level_positions(2)).colwise().norm().maxCoeff();
     CHECK(skin > 1e-5);
@@ -183,7 +188,7 @@ TEST_CASE("a small change of the shape is a small change of the layers") {
 TEST_CASE(
     "smoothed weights: those of the skin on the cuts, alike on the three levels; the posed bone wrap stays feasible") {
     const SmplBody<double>& body = embedded_human();
-    const LayeredBody<double> layered = make_layered_body(body);
+    const LayeredBody<double>& layered = embedded_layers();
     const MatrixX<double> weights = layered.weights.dense();
     const MatrixX<double> skin_weights = body.weights.dense();
     double change = 0;
