@@ -6,6 +6,8 @@
 #include <softtissue/core/error.hpp>
 
 #ifdef SOFTTISSUE_HAS_MPI
+#define OMPI_SKIP_MPICXX  // the old C++ interface is a library of its own
+#define MPICH_SKIP_MPICXX
 #include <mpi.h>
 #endif
 
