@@ -4,14 +4,14 @@
 ///
 /// What        WrapCleanup: bone wrap B and muscle wrap M under a barrier against bad prisms, near their targets.
 /// Equation    per vertex i:  sum over the prisms around, of both layers, of the PrismBarrier
-///             + sum over the edges at i from surface to surface that are shorter than L_0, of (L_0 / L - 1)^2
 ///             + w_T |B_i - T_i|^2 + w_L mean_j |e_i - e_j|^2  (e = B - T)   or   + w_M |M_i - (s_i + lambda_i (B_i - s_i))|^2,
 ///             lambda_i = min(fat_i / |B_i - s_i|, largest_fat_fraction).
 /// Method      Gauss-Seidel over the vertices in random order, B and M in turn: one Newton step with the 3x3 Hessian's
 ///             eigenvalues taken absolute, at most max_step long, halved until the energy falls. Stops when a sweep moves no
-///             vertex by more than `negligible`.
-/// Valid       starts from positive coefficients and keeps them: the barrier is infinite elsewhere. Coefficients do not feel
-///             how long a column is: but for L_0, layers would vanish below deep folds of the skin.
+///             vertex by more than `negligible`. Coefficients do not feel how long a column is: below deep folds of the skin
+///             a layer may vanish. Where an edge from surface to surface ends shorter than L_0 = short_column, all begins
+///             again with (L_0 / L - 1)^2 for each edge that is shorter; not at first, as short columns turn more easily.
+/// Valid       starts from positive coefficients and keeps them: the barrier is infinite elsewhere.
 /// Tests       tests/unit/anatomy/wrap_cleanup_test.cpp
 #pragma once
 
@@ -40,7 +40,7 @@ struct WrapCleanupOptions {
     S smoothing_weight = S(4e3);
     S fraction_weight = S(2e4);
     S largest_fat_fraction = S(0.45);
-    S short_column = S(0.0003);  // L_0: edges between two surfaces that are shorter are pushed apart
+    S short_column = S(0.0012);  // L_0: edges between two surfaces that end shorter are pushed apart
     S max_step = S(0.005);
     S negligible = S(1e-4);
     int max_sweeps = 30;
@@ -68,6 +68,25 @@ public:
 
     /// Improves both wraps, which must give positive prisms; returns the number of sweeps.
     int improve(Matrix3X<S>& bone, Matrix3X<S>& muscle) {
+        short_column_ = S(0);
+        int sweeps = sweep_from(bone, muscle);
+        if (shortest_column() < options_.short_column) {
+            short_column_ = options_.short_column;
+            sweeps += sweep_from(bone, muscle);
+        }
+        bone = bone_;
+        muscle = muscle_;
+        return sweeps;
+    }
+
+private:
+    /// A quadratic energy of one vertex, w |x - centre|^2 + constant.
+    struct Spring {
+        S weight;
+        Vector3<S> centre;
+    };
+
+    int sweep_from(const Matrix3X<S>& bone, const Matrix3X<S>& muscle) {
         bone_ = bone;
         muscle_ = muscle;
         ShuffledOrder order(mesh_.num_vertices());
@@ -82,17 +101,12 @@ public:
                 moved = std::max(moved, move_muscle(v));
             }
         }
-        bone = bone_;
-        muscle = muscle_;
         return sweep;
     }
 
-private:
-    /// A quadratic energy of one vertex, w |x - centre|^2 + constant.
-    struct Spring {
-        S weight;
-        Vector3<S> centre;
-    };
+    S shortest_column() const {
+        return std::min((muscle_ - bone_).colwise().norm().minCoeff(), (skin_ - muscle_).colwise().norm().minCoeff());
+    }
 
     S move_bone(std::int32_t v) {
         Vector3<S> mean_error = Vector3<S>::Zero();
@@ -147,14 +161,14 @@ private:
             sum += barrier_.energy(X, inverse_sines);
         });
         for_each_column(wrap, v, [&](const Vector3<S>& way) {
-            const S excess = std::max(options_.short_column / way.norm() - S(1), S(0));
+            const S excess = std::max(short_column_ / way.norm() - S(1), S(0));
             sum += excess * excess;
         });
         return sum;
     }
 
     void add_column_derivatives(const Vector3<S>& way, Vector3<S>& gradient, Matrix3<S>& hessian) const {
-        const S length = way.norm(), ratio = options_.short_column / length;
+        const S length = way.norm(), ratio = short_column_ / length;
         if (ratio > S(1)) {
             const Vector3<S> direction = way / length;
             const S slope = S(-2) * (ratio - S(1)) * ratio / length;
@@ -198,6 +212,7 @@ private:
     Matrix3X<S> inverse_sines_;
     PrismBarrier<S> barrier_;
     WrapCleanupOptions<S> options_;
+    S short_column_ = S(0);
     Matrix3X<S> bone_;
     Matrix3X<S> muscle_;
 };
