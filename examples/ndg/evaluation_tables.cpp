@@ -102,14 +102,15 @@ void print_table(const std::string& title, const SplitResult& split, const std::
 
 /// How much worse the others are than the first method after the reference, pose by pose.
 void print_differences(const std::vector<const MethodResult*>& methods) {
-    if (methods.size() < 3) {
+    const size_t first = methods.front()->name == "fem" ? 1 : 0;
+    if (methods.size() < first + 2) {
         return;
     }
-    std::printf("more than %s, pose by pose\n", methods[1]->name.c_str());
-    for (size_t k = 2; k < methods.size(); ++k) {
+    std::printf("more than %s, pose by pose\n", methods[first]->name.c_str());
+    for (size_t k = first + 1; k < methods.size(); ++k) {
         std::printf("%-16s", methods[k]->name.c_str());
         for (const Metric& metric : metrics) {
-            const FigureSummary more = metric.difference(methods[k]->evaluation, methods[1]->evaluation);
+            const FigureSummary more = metric.difference(methods[k]->evaluation, methods[first]->evaluation);
             std::printf("  %+8.*f +- %5.*f ", metric.digits, metric.scale * more.mean, metric.digits,
                         metric.scale * more.standard_error);
         }
@@ -208,7 +209,9 @@ void print_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& 
         }
     }
     if (test != nullptr && members.table4.size() > 1) {
-        print_table("Table 4, parts of the method taken away", *test, rows(*test, members.table4));
+        const auto methods = rows(*test, members.table4);
+        print_table("Table 4, parts of the method taken away", *test, methods);
+        print_differences(methods);
     }
     for (const SplitResult& split : splits) {
         std::printf("\n");
