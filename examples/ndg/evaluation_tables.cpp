@@ -204,6 +204,7 @@ void print_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& 
     if (const SplitResult* outliers = find_split(splits, true)) {
         const auto methods = rows(*outliers, members.table2);
         print_table("Table 2, bodies far from those of the training", *outliers, methods);
+        print_differences(methods);
         if (test != nullptr) {
             print_ratios(methods, *test);
         }
