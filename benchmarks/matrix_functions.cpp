@@ -28,70 +28,52 @@ void count_matrices(benchmark::State& state, Index bytes_a_matrix) {
     state.SetBytesProcessed(state.iterations() * state.range(0) * bytes_a_matrix);
 }
 
-template <class S>
-void matrix_exponentials(benchmark::State& state) {
-    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), 0.3);
+/// Times `kernel(Q, X)`, which fills X, for matrices of that spread; it moves so many numbers a matrix.
+template <class S, class Kernel>
+void run(benchmark::State& state, double spread, Index numbers_a_matrix, const Kernel& kernel) {
+    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), spread);
     Matrix9X<S> X(9, Q.cols());
     for (auto _ : state) {
-        matrix_exponentials_into<S>(Q, X);
+        kernel(Q, X);
         benchmark::DoNotOptimize(X.data());
         benchmark::ClobberMemory();
     }
-    count_matrices(state, Index(18 * sizeof(S)));
+    count_matrices(state, numbers_a_matrix * Index(sizeof(S)));
+}
+
+template <class S>
+void matrix_exponentials(benchmark::State& state) {
+    run<S>(state, 0.3, 18, [](const Matrix9X<S>& Q, Matrix9X<S>& X) { matrix_exponentials_into<S>(Q, X); });
 }
 
 /// Norms around 3: some matrices need squarings.
 template <class S>
 void large_matrix_exponentials(benchmark::State& state) {
-    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), 1);
-    Matrix9X<S> X(9, Q.cols());
-    for (auto _ : state) {
-        matrix_exponentials_into<S>(Q, X);
-        benchmark::DoNotOptimize(X.data());
-        benchmark::ClobberMemory();
-    }
-    count_matrices(state, Index(18 * sizeof(S)));
+    run<S>(state, 1, 18, [](const Matrix9X<S>& Q, Matrix9X<S>& X) { matrix_exponentials_into<S>(Q, X); });
 }
 
 template <class S>
 void matrix_exponential_pullbacks(benchmark::State& state) {
-    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), 0.3);
-    Matrix9X<S> L(9, Q.cols());
-    for (auto _ : state) {
-        matrix_exponential_pullbacks_into<S>(Q, Q, L);
-        benchmark::DoNotOptimize(L.data());
-        benchmark::ClobberMemory();
-    }
-    count_matrices(state, Index(27 * sizeof(S)));
+    run<S>(state, 0.3, 27, [](const Matrix9X<S>& Q, Matrix9X<S>& L) { matrix_exponential_pullbacks_into<S>(Q, Q, L); });
 }
 
 template <class S>
 void one_by_one_exponentials(benchmark::State& state) {
-    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), 0.3);
-    Matrix9X<S> X(9, Q.cols());
-    for (auto _ : state) {
+    run<S>(state, 0.3, 18, [](const Matrix9X<S>& Q, Matrix9X<S>& X) {
         for (Index c = 0; c < Q.cols(); ++c) {
             X.col(c) = vec(matrix_exponential(unvec<S>(Q.col(c))));
         }
-        benchmark::DoNotOptimize(X.data());
-        benchmark::ClobberMemory();
-    }
-    count_matrices(state, Index(18 * sizeof(S)));
+    });
 }
 
 template <class S>
 void eigen_exponentials(benchmark::State& state) {
-    const Matrix9X<S> Q = random_logarithms<S>(state.range(0), 0.3);
-    Matrix9X<S> X(9, Q.cols());
-    for (auto _ : state) {
+    run<S>(state, 0.3, 18, [](const Matrix9X<S>& Q, Matrix9X<S>& X) {
         for (Index c = 0; c < Q.cols(); ++c) {
             const Matrix3<S> exponential = unvec<S>(Q.col(c)).exp();
             X.col(c) = vec(exponential);
         }
-        benchmark::DoNotOptimize(X.data());
-        benchmark::ClobberMemory();
-    }
-    count_matrices(state, Index(18 * sizeof(S)));
+    });
 }
 
 template <class S>

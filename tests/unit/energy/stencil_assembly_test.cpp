@@ -67,6 +67,21 @@ constexpr Index num_vertices = 9;
 constexpr Index many = 1501;  // the Hessians of so many stencils fill more than two tiles
 const std::array<std::int32_t, 2> held{4, 0};
 
+/// Largest difference between a matrix of the free vertices and their part of one of all vertices.
+double largest_difference(const MatrixX<double>& assembled, const MatrixX<double>& dense,
+                          const PrescribedVertices& prescribed) {
+    double worst = 0;
+    for (Index i = 0; i < prescribed.num_free(); ++i) {
+        for (Index j = 0; j < prescribed.num_free(); ++j) {
+            const Index row = prescribed.free_vertices()[size_t(i)], column = prescribed.free_vertices()[size_t(j)];
+            worst = std::max(
+                worst,
+                (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column)).cwiseAbs().maxCoeff());
+        }
+    }
+    return worst;
+}
+
 }  // namespace
 
 TEST_CASE("energies, gradients and Hessians are added as a naive loop adds them") {
@@ -101,16 +116,7 @@ TEST_CASE("energies, gradients and Hessians are added as a naive loop adds them"
     assembly.bind(prescribed, hessian.pattern());
     assembly.add_hessian(executor, stencils.hessian_of(), hessian);
     const MatrixX<double> assembled = hessian.matrix().toDense();
-    double worst = 0;
-    for (Index i = 0; i < prescribed.num_free(); ++i) {
-        for (Index j = 0; j < prescribed.num_free(); ++j) {
-            const Index row = prescribed.free_vertices()[size_t(i)], column = prescribed.free_vertices()[size_t(j)];
-            worst = std::max(
-                worst,
-                (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column)).cwiseAbs().maxCoeff());
-        }
-    }
-    CHECK(worst < 1e-13);
+    CHECK(largest_difference(assembled, dense, prescribed) < 1e-13);
     CHECK((assembled - assembled.transpose()).cwiseAbs().maxCoeff() == 0.0);
 }
 
@@ -190,16 +196,7 @@ TEST_CASE("more stencils than a tile holds, several at a time, are added as one 
         }
     }
     const MatrixX<double> assembled = packed.matrix().toDense();
-    double worst = 0;
-    for (Index i = 0; i < prescribed.num_free(); ++i) {
-        for (Index j = 0; j < prescribed.num_free(); ++j) {
-            const Index row = prescribed.free_vertices()[size_t(i)], column = prescribed.free_vertices()[size_t(j)];
-            worst = std::max(
-                worst,
-                (assembled.block<3, 3>(3 * i, 3 * j) - dense.block<3, 3>(3 * row, 3 * column)).cwiseAbs().maxCoeff());
-        }
-    }
-    CHECK(worst < 1e-11);
+    CHECK(largest_difference(assembled, dense, prescribed) < 1e-11);
 }
 
 TEST_CASE("pairs of nodes fill their slots without gap") {
