@@ -3,15 +3,11 @@
 //
 // Beside each closed-form projection: the numeric 9x9 eigen-decomposition of the same Hessian ("numeric_9x9"); beside svd3:
 // Eigen's JacobiSVD. States: F = R (I + S), entries of S normal with deviation 0.12.
+#include "material_states.hpp"
+
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/linalg/svd3.hpp>
-#include <softtissue/material/arap.hpp>
-#include <softtissue/material/corotated_linear.hpp>
-#include <softtissue/material/corotated_linear_polar.hpp>
-#include <softtissue/material/fung_orthotropic.hpp>
-#include <softtissue/material/stable_neo_hookean.hpp>
-#include <softtissue/testing/random_states.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -20,84 +16,33 @@
 
 #include <vector>
 
-using namespace softtissue;
+using namespace benchmarks;
 
 namespace {
 
-template <class Scalar>
-std::vector<Matrix3<Scalar>> states() {
-    RandomGenerator random(1);
-    std::vector<Matrix3<Scalar>> result;
-    for (int i = 0; i < 1024; ++i) {
-        const Matrix3<Scalar> S = Scalar(0.12) * random_normal<Matrix3<Scalar>>(random);
-        const Matrix3<Scalar> stretch = Matrix3<Scalar>::Identity() + (S + S.transpose()) / Scalar(2);
-        result.push_back(random_rotation<Scalar>(random) * stretch);
-    }
-    return result;
-}
-
-/// Times `kernel` over all states, one after the other; the results go to memory.
-template <class Scalar, class Kernel>
-void run(benchmark::State& state, const Kernel& kernel) {
-    const std::vector<Matrix3<Scalar>> F = states<Scalar>();
-    std::vector<decltype(kernel(F.front()))> results(F.size());
-    for (auto iteration : state) {
-        for (size_t i = 0; i < F.size(); ++i) {
-            results[i] = kernel(F[i]);
-        }
-        benchmark::DoNotOptimize(results.data());
-        benchmark::ClobberMemory();
-    }
-    state.counters["cells/s"] =
-        benchmark::Counter(double(state.iterations()) * double(F.size()), benchmark::Counter::kIsRate);
-}
-
-template <class S>
-constexpr YoungPoisson<S> flesh = {S(45e3), S(0.47)};
-
-template <class S>
-StableNeoHookean<S> sample(const StableNeoHookean<S>*) {
-    return StableNeoHookean<S>::from_textbook_lame(flesh<S>);
-}
-template <class S>
-Arap<S> sample(const Arap<S>*) {
-    return Arap<S>();
-}
-template <class S>
-CorotatedLinear<S> sample(const CorotatedLinear<S>*) {
-    return CorotatedLinear<S>::from_young_poisson(flesh<S>, Matrix3<S>::Identity());
-}
-template <class S>
-CorotatedLinearPolar<S> sample(const CorotatedLinearPolar<S>*) {
-    return CorotatedLinearPolar<S>::from_young_poisson(flesh<S>);
-}
-template <class S>
-FungOrthotropic<S> sample(const FungOrthotropic<S>*) {
-    return {{.normal_modulus = S(10e3), .tangential_modulus = S(30e3)}, Matrix3<S>::Identity()};
-}
-
 template <class M>
 void energy_density(benchmark::State& state) {
-    const M material = sample(static_cast<const M*>(nullptr));
-    run<typename M::Scalar>(state, [&](const auto& F) { return material.energy_density(F); });
+    const M material = sample<M>();
+    run(state, states<typename M::Scalar>(), [&](const auto& F) { return material.energy_density(F); });
 }
 
 template <class M>
 void first_piola(benchmark::State& state) {
-    const M material = sample(static_cast<const M*>(nullptr));
-    run<typename M::Scalar>(state, [&](const auto& F) { return material.first_piola(F); });
+    const M material = sample<M>();
+    run(state, states<typename M::Scalar>(), [&](const auto& F) { return material.first_piola(F); });
 }
 
 template <class M>
 void hessian(benchmark::State& state) {
-    const M material = sample(static_cast<const M*>(nullptr));
-    run<typename M::Scalar>(state, [&](const auto& F) { return material.hessian(F); });
+    const M material = sample<M>();
+    run(state, states<typename M::Scalar>(), [&](const auto& F) { return material.hessian(F); });
 }
 
 template <class M>
 void projected_hessian(benchmark::State& state) {
-    const M material = sample(static_cast<const M*>(nullptr));
-    run<typename M::Scalar>(state, [&](const auto& F) { return material.projected_hessian(F, PsdFilter::clamp); });
+    const M material = sample<M>();
+    run(state, states<typename M::Scalar>(),
+        [&](const auto& F) { return material.projected_hessian(F, PsdFilter::clamp); });
 }
 
 /// The baseline: every Hessian is decomposed and rebuilt. Compiled once, not into the loop of every material.
@@ -110,18 +55,19 @@ template <class Scalar>
 
 template <class M>
 void numeric_9x9_projected_hessian(benchmark::State& state) {
-    const M material = sample(static_cast<const M*>(nullptr));
-    run<typename M::Scalar>(state, [&](const auto& F) { return numerically_clamped<typename M::Scalar>(material.hessian(F)); });
+    const M material = sample<M>();
+    run(state, states<typename M::Scalar>(),
+        [&](const auto& F) { return numerically_clamped<typename M::Scalar>(material.hessian(F)); });
 }
 
 template <class Scalar>
 void rotation(benchmark::State& state) {
-    run<Scalar>(state, [](const Matrix3<Scalar>& F) { return polar_rotation(F); });
+    run(state, states<Scalar>(), [](const Matrix3<Scalar>& F) { return polar_rotation(F); });
 }
 
 template <class Scalar>
 void eigen_jacobi_svd_rotation(benchmark::State& state) {
-    run<Scalar>(state, [](const Matrix3<Scalar>& F) {
+    run(state, states<Scalar>(), [](const Matrix3<Scalar>& F) {
         const Eigen::JacobiSVD<Matrix3<Scalar>> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
         return Matrix3<Scalar>(svd.matrixU() * svd.matrixV().transpose());
     });

@@ -3,13 +3,10 @@
 //
 // plain: the scalar law over double. numeric_9x9: its Hessian through Eigen's eigen-decomposition over double. packed: the law
 // over packs of float or double. States: F = R (I + S), entries of S normal with deviation 0.12; results stay in the cache.
+#include "material_states.hpp"
+
 #include <softtissue/core/pack.hpp>
-#include <softtissue/material/arap.hpp>
-#include <softtissue/material/corotated_linear_polar.hpp>
-#include <softtissue/material/fung_orthotropic.hpp>
 #include <softtissue/material/packed.hpp>
-#include <softtissue/material/stable_neo_hookean.hpp>
-#include <softtissue/testing/random_states.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -17,22 +14,9 @@
 
 #include <vector>
 
-using namespace softtissue;
+using namespace benchmarks;
 
 namespace {
-
-constexpr int count = 1024;
-
-template <class S>
-std::vector<Matrix3<S>> states() {
-    RandomGenerator random(1);
-    std::vector<Matrix3<S>> result;
-    for (int i = 0; i < count; ++i) {
-        const Matrix3<S> strain = S(0.12) * random_normal<Matrix3<S>>(random);
-        result.push_back(random_rotation<S>(random) * (Matrix3<S>::Identity() + (strain + strain.transpose()) / S(2)));
-    }
-    return result;
-}
 
 /// The same, as many side by side as a register has lanes.
 template <class S>
@@ -44,45 +28,6 @@ std::vector<Matrix3<Pack<S, natural_lanes<S>>>> packed_states() {
         result.push_back(packed_matrix<N>([&](int i) -> const Matrix3<S>& { return plain[size_t(first + i)]; }));
     }
     return result;
-}
-
-/// Times `kernel` over all states; the results go to memory.
-template <class States, class Kernel>
-void run(benchmark::State& state, const States& F, const Kernel& kernel) {
-    std::vector<decltype(kernel(F.front()))> results(F.size());
-    for (auto iteration : state) {
-        for (size_t i = 0; i < F.size(); ++i) {
-            results[i] = kernel(F[i]);
-        }
-        benchmark::DoNotOptimize(results.data());
-        benchmark::ClobberMemory();
-    }
-    state.counters["cells/s"] = benchmark::Counter(double(count), benchmark::Counter::kIsIterationInvariantRate);
-}
-
-template <class S>
-constexpr YoungPoisson<S> flesh = {S(45e3), S(0.47)};
-
-template <class S>
-StableNeoHookean<S> sample(const StableNeoHookean<S>*) {
-    return StableNeoHookean<S>::from_textbook_lame(flesh<S>);
-}
-template <class S>
-Arap<S> sample(const Arap<S>*) {
-    return Arap<S>();
-}
-template <class S>
-CorotatedLinearPolar<S> sample(const CorotatedLinearPolar<S>*) {
-    return CorotatedLinearPolar<S>::from_young_poisson(flesh<S>);
-}
-template <class S>
-FungOrthotropic<S> sample(const FungOrthotropic<S>*) {
-    return {{.normal_modulus = S(10e3), .tangential_modulus = S(30e3)}, Matrix3<S>::Identity()};
-}
-
-template <class M>
-M sample() {
-    return sample(static_cast<const M*>(nullptr));
 }
 
 template <class M>
