@@ -2,6 +2,8 @@
 // Networks that predict deformation gradients: a training step beside its matrix products alone, inference at the paper's
 // size beside one reading of the weights, activations beside those by std::erf.
 
+#include "machine_limits.hpp"
+
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/nn/adamw.hpp>
 #include <softtissue/nn/gelu.hpp>
@@ -10,6 +12,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace {
 
@@ -34,6 +38,13 @@ double num_weights(const MlpSizes& sizes) {
     return count + width * double(sizes.outputs);
 }
 
+void count_training(benchmark::State& state, Index batch, int threads) {
+    benchmarks::count_work<float>(state, {.unit = "samples",
+                                          .items = double(batch),
+                                          .flops = 6 * num_weights(small_body) * double(batch),
+                                          .threads = threads});
+}
+
 /// Value, gradient and update: 6 flop a weight and sample. Arguments: batch, threads.
 void training_step(benchmark::State& state) {
     const Index batch = state.range(0);
@@ -51,9 +62,7 @@ void training_step(benchmark::State& state) {
         adamw_update({}, 1e-6, ++step, gradient, first, second, network.parameters(), executor);
         benchmark::ClobberMemory();
     }
-    state.SetItemsProcessed(state.iterations() * batch);
-    state.counters["flop/s"] =
-        benchmark::Counter(6 * num_weights(small_body) * double(batch), benchmark::Counter::kIsIterationInvariantRate);
+    count_training(state, batch, executor.num_threads());
 }
 
 /// The three matrix products of each layer by Eigen, and nothing else.
@@ -79,9 +88,7 @@ void products_of_a_training_step(benchmark::State& state) {
             benchmark::ClobberMemory();
         }
     }
-    state.SetItemsProcessed(state.iterations() * batch);
-    state.counters["flop/s"] =
-        benchmark::Counter(6 * num_weights(small_body) * double(batch), benchmark::Counter::kIsIterationInvariantRate);
+    count_training(state, batch, 1);
 }
 
 void adamw_step(benchmark::State& state) {
@@ -93,7 +100,12 @@ void adamw_step(benchmark::State& state) {
         adamw_update({}, 1e-6, ++step, g, m, v, p, executor);
         benchmark::ClobberMemory();
     }
-    state.SetBytesProcessed(state.iterations() * size * 28);
+    const double bytes = 4 * double(size);
+    benchmarks::count_work<float>(state, {.unit = "parameters",
+                                          .items = double(size),
+                                          .bytes_read = 4 * bytes,
+                                          .bytes_written = 3 * bytes,
+                                          .threads = executor.num_threads()});
 }
 
 Mlp<float>& paper_network() {
@@ -117,20 +129,13 @@ void inference_at_paper_size(benchmark::State& state) {
         benchmark::DoNotOptimize(y.data());
         benchmark::ClobberMemory();
     }
-    state.SetBytesProcessed(state.iterations() * network.parameters().size() * Index(sizeof(float)));
-}
-
-/// The same bytes, added up.
-void reading_the_weights(benchmark::State& state) {
-    const ThreadExecutor executor(int(state.range(0)));
-    const VectorX<float>& weights = paper_network().parameters();
-    for (auto _ : state) {
-        executor.for_each_range(weights.size(), [&](Index begin, Index end) {
-            const float* const from = weights.data() + begin;
-            benchmark::DoNotOptimize(detail::lane_sum<float>(end - begin, [from](Index i) { return from[i]; }));
-        });
-    }
-    state.SetBytesProcessed(state.iterations() * weights.size() * Index(sizeof(float)));
+    const std::span<const float> weights(network.parameters().data(), size_t(network.parameters().size()));
+    benchmarks::count_work<float>(state, {.unit = "samples",
+                                          .items = 1,
+                                          .flops = 2 * double(weights.size()),
+                                          .bytes_read = double(weights.size_bytes()),
+                                          .memory = std::as_bytes(weights),
+                                          .threads = int(state.range(0))});
 }
 
 template <class S, class A>
@@ -150,7 +155,7 @@ void activation(benchmark::State& state) {
         activate<S, A>(x.data(), {value.data(), slope.data()}, 4096);
         benchmark::ClobberMemory();
     }
-    state.SetItemsProcessed(state.iterations() * 4096);
+    benchmarks::count_work<S>(state, {.unit = "values", .items = 4096});
 }
 
 template <class S>
@@ -164,18 +169,36 @@ void naive_activation(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
-    state.SetItemsProcessed(state.iterations() * 4096);
+    benchmarks::count_work<S>(state, {.unit = "values", .items = 4096});
 }
 
 }  // namespace
 
-BENCHMARK(training_step)->Args({16, 1})->Args({32, 1})->Args({16, 2})->Args({32, 2})->Unit(benchmark::kMillisecond);
-BENCHMARK(products_of_a_training_step)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
-BENCHMARK(adamw_step)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
-BENCHMARK(inference_at_paper_size)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
-BENCHMARK(reading_the_weights)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
-BENCHMARK(activation<float, Gelu>);
-BENCHMARK(activation<double, Gelu>);
-BENCHMARK(activation<float, TanhGelu>);
-BENCHMARK(naive_activation<float>);
-BENCHMARK(naive_activation<double>);
+BENCHMARK(training_step)
+    ->Name("network, a training step of 14,992 prisms/float")
+    ->ArgNames({"batch", "threads"})
+    ->ArgsProduct({{16, 32}, {1, 2}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(products_of_a_training_step)
+    ->Name("network, a training step of 14,992 prisms/baseline Eigen's products alone, float")
+    ->ArgName("batch")
+    ->Arg(16)
+    ->Arg(32)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(adamw_step)
+    ->Name("network, a step of AdamW/float")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(inference_at_paper_size)
+    ->Name("13 network of the paper's size, one sample/float")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(activation<float, Gelu>)->Name("GELU and slope/float");
+BENCHMARK(activation<double, Gelu>)->Name("GELU and slope/double");
+BENCHMARK(activation<float, TanhGelu>)->Name("GELU and slope/by tanh, float");
+BENCHMARK(naive_activation<float>)->Name("GELU and slope/baseline std::erf and std::exp, float");
+BENCHMARK(naive_activation<double>)->Name("GELU and slope/baseline std::erf and std::exp, double");
