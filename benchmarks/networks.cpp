@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Networks that predict deformation gradients: a training step beside its matrix products alone, inference at the paper's
-// size beside one reading of the weights, activations beside those by std::erf.
+// size with weights in each format, activations beside those by std::erf.
 
 #include "machine_limits.hpp"
 
@@ -8,12 +8,14 @@
 #include <softtissue/nn/adamw.hpp>
 #include <softtissue/nn/gelu.hpp>
 #include <softtissue/nn/mlp.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
 
 namespace {
 
@@ -111,31 +113,69 @@ void adamw_step(benchmark::State& state) {
 Mlp<float>& paper_network() {
     static Mlp<float> network = [] {
         Mlp<float> result(paper_body);
-        result.parameters().setConstant(1e-3F);
+        result.initialize(1);
         return result;
     }();
     return network;
 }
 
-/// One sample; bytes are those of the weights. Argument: threads.
+template <WeightFormat format>
+const auto& network_of_format() {
+    if constexpr (format == WeightFormat::full) {
+        return paper_network();
+    } else {
+        static const QuantizedMlp<float> network(paper_network(), format, random_columns(paper_body.inputs, 200),
+                                                 ThreadExecutor(2));
+        return network;
+    }
+}
+
+/// Argument: threads. Reading is measured on as many bytes of the weights in single precision.
+template <WeightFormat format, int samples>
 void inference_at_paper_size(benchmark::State& state) {
     const ThreadExecutor executor(int(state.range(0)));
-    const Mlp<float>& network = paper_network();
-    auto scratch = network.make_scratch(1);
-    const MatrixX<float> x = random_columns(paper_body.inputs, 1);
-    MatrixX<float> y(paper_body.outputs, 1);
+    const auto& network = network_of_format<format>();
+    auto scratch = network.make_scratch(samples);
+    const MatrixX<float> x = random_columns(paper_body.inputs, samples);
+    MatrixX<float> y(paper_body.outputs, samples);
     for (auto _ : state) {
         network.infer_into(x, scratch, y, executor);
         benchmark::DoNotOptimize(y.data());
         benchmark::ClobberMemory();
     }
-    const std::span<const float> weights(network.parameters().data(), size_t(network.parameters().size()));
+    std::span<const float> weights(paper_network().parameters().data(), size_t(paper_network().parameters().size()));
+    if constexpr (format != WeightFormat::full) {
+        weights = weights.first(network.num_bytes() / sizeof(float));
+    }
+    const double flops = 2 * num_weights(paper_body) * samples;
     benchmarks::count_work<float>(state, {.unit = "samples",
-                                          .items = 1,
-                                          .flops = 2 * double(weights.size()),
+                                          .items = samples,
+                                          .flops = format == WeightFormat::full ? flops : 0,
                                           .bytes_read = double(weights.size_bytes()),
                                           .memory = std::as_bytes(weights),
                                           .threads = int(state.range(0))});
+}
+
+template <WeightFormat format, int samples>
+void add_inference_at_paper_size(const std::string& variant) {
+    const std::string group =
+        samples == 1 ? "13 network of the paper's size, one sample/" : "13 network of the paper's size, four samples/";
+    benchmark::RegisterBenchmark((group + variant).c_str(), inference_at_paper_size<format, samples>)
+        ->ArgName("threads")
+        ->Arg(1)
+        ->Arg(2)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+}
+
+template <int samples>
+bool add_inference_at_paper_size() {
+    add_inference_at_paper_size<WeightFormat::full, samples>("baseline full weights");
+    add_inference_at_paper_size<WeightFormat::full, samples>("float");
+    add_inference_at_paper_size<WeightFormat::bfloat16, samples>("bfloat16");
+    add_inference_at_paper_size<WeightFormat::int8, samples>("int8");
+    add_inference_at_paper_size<WeightFormat::int4, samples>("int4");
+    return true;
 }
 
 template <class S, class A>
@@ -191,12 +231,7 @@ BENCHMARK(adamw_step)
     ->Arg(1)
     ->Arg(2)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(inference_at_paper_size)
-    ->Name("13 network of the paper's size, one sample/float")
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->Unit(benchmark::kMillisecond);
+[[maybe_unused]] const bool is_inference_added = add_inference_at_paper_size<1>() && add_inference_at_paper_size<4>();
 BENCHMARK(activation<float, Gelu>)->Name("GELU and slope/float");
 BENCHMARK(activation<double, Gelu>)->Name("GELU and slope/double");
 BENCHMARK(activation<float, TanhGelu>)->Name("GELU and slope/by tanh, float");

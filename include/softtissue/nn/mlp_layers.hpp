@@ -119,8 +119,30 @@ public:
     template <Executor E = SequentialExecutor>
     void infer_into(ConstRef<VectorX<S>> parameters, ConstRef<MatrixX<S>> inputs, Scratch& scratch,
                     Eigen::Ref<MatrixX<S>> outputs, const E& executor = {}) const {
+        require_parameters(parameters.size());
+        infer_by(
+            inputs, scratch, outputs,
+            [&](Index k, ConstRef<MatrixX<S>> x, Eigen::Ref<MatrixX<S>> y) {
+                linear(k).forward_into(linear_parameters(parameters, k), x, y, executor);
+            },
+            [&](Index k) { return norm_parameters(parameters, k); });
+    }
+
+    /// The same with the linear layers as forward(layer, x, y), whatever form their weights have, and the parameters of
+    /// normalisations as norm_parameters_of(layer).
+    template <class Forward, class NormParameters>
+    void infer_by(ConstRef<MatrixX<S>> inputs, Scratch& scratch, Eigen::Ref<MatrixX<S>> outputs, const Forward& forward,
+                  const NormParameters& norm_parameters_of) const {
+        require_outputs(inputs, outputs);
+        forward(num_hidden(), last_inputs_by(inputs, scratch, forward, norm_parameters_of), outputs);
+    }
+
+    /// What the last linear layer is given; lies in the scratch, or is `inputs` if there are no hidden layers.
+    template <class Forward, class NormParameters>
+    Eigen::Ref<const MatrixX<S>> last_inputs_by(ConstRef<MatrixX<S>> inputs, Scratch& scratch, const Forward& forward,
+                                                const NormParameters& norm_parameters_of) const {
+        require_inputs(inputs, scratch.deviations.size());
         const Index batch = inputs.cols();
-        require_sizes(parameters.size(), inputs, outputs, scratch.deviations.size());
         const auto output_of = [&](Index k) -> Eigen::Ref<MatrixX<S>> {
             return (k % 2 == 0 ? scratch.even : scratch.odd).topLeftCorner(norm(k).features(), batch);
         };
@@ -132,14 +154,13 @@ public:
         };
         for (Index k = 0; k < num_hidden(); ++k) {
             Eigen::Ref<MatrixX<S>> y = output_of(k);
-            linear(k).forward_into(linear_parameters(parameters, k), input_of(k), y, executor);
-            norm(k).forward_into(norm_parameters(parameters, k), y, y, scratch.deviations.head(batch), y);
+            forward(k, input_of(k), y);
+            norm(k).forward_into(norm_parameters_of(k), y, y, scratch.deviations.head(batch), y);
             for (Index sample = 0; sample < batch; ++sample) {
                 activate(y.col(sample).data(), y.rows());
             }
         }
-        const Index last = num_hidden();
-        linear(last).forward_into(linear_parameters(parameters, last), input_of(last), outputs, executor);
+        return input_of(num_hidden());
     }
 
     /// The outputs, and what backward_into() needs, of at most as many samples as the tape was made for.
@@ -245,12 +266,22 @@ private:
 
     void require_sizes(Index parameters, ConstRef<MatrixX<S>> inputs, ConstRef<MatrixX<S>> outputs,
                        Index max_batch) const {
+        require_parameters(parameters);
+        require_outputs(inputs, outputs);
+        require_inputs(inputs, max_batch);
+    }
+    void require_parameters(Index parameters) const {
         require(parameters == num_parameters_, "network: ", parameters, " parameters, expected ", num_parameters_);
+    }
+    void require_inputs(ConstRef<MatrixX<S>> inputs, Index max_batch) const {
         require(inputs.rows() == sizes_.inputs, "network: ", inputs.rows(), " inputs, expected ", sizes_.inputs);
-        require(outputs.rows() == sizes_.outputs && outputs.cols() == inputs.cols(), "network: outputs ",
-                outputs.rows(), " x ", outputs.cols(), ", expected ", sizes_.outputs, " x ", inputs.cols());
         require(inputs.cols() >= 1 && inputs.cols() <= max_batch, "network: batch of ", inputs.cols(),
                 ", expected 1 to ", max_batch);
+    }
+    void require_outputs(ConstRef<MatrixX<S>> inputs, ConstRef<MatrixX<S>> outputs) const {
+        require(inputs.rows() != sizes_.inputs || (outputs.rows() == sizes_.outputs && outputs.cols() == inputs.cols()),
+                "network: outputs ", outputs.rows(), " x ", outputs.cols(), ", expected ", sizes_.outputs, " x ",
+                inputs.cols());
     }
 
     MlpSizes sizes_;
