@@ -2,6 +2,7 @@
 #include <support/allocation_counter.hpp>
 
 #include <softtissue/nn/mlp.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
 #include <doctest/doctest.h>
 
@@ -75,5 +76,22 @@ TEST_CASE_TEMPLATE("inference allocates nothing, of one sample, of a few and of 
         const softtissue_test::AllocationCounter counter;
         network.infer_into(x, scratch, y);
         CHECK(counter.count() == 0);
+    }
+}
+
+TEST_CASE("nor with weights in fewer bytes") {
+    Mlp<float> network({50, {300, 20}, 1500});
+    network.initialize(1);
+    const MatrixX<float> typical =
+        MatrixX<float>::NullaryExpr(50, 9, [](Index i, Index j) { return float(i * j % 7); });
+    for (const WeightFormat format : {WeightFormat::bfloat16, WeightFormat::int8, WeightFormat::int4}) {
+        const QuantizedMlp<float> small(network, format, typical);
+        auto scratch = small.make_scratch(8);
+        for (const Index batch : {1, 2, 8}) {
+            MatrixX<float> y(1500, batch);
+            const softtissue_test::AllocationCounter counter;
+            small.infer_into(typical.leftCols(batch), scratch, y);
+            CHECK(counter.count() == 0);
+        }
     }
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <support/allocation_counter.hpp>
-
 #include <softtissue/nn/quantized_mlp.hpp>
 
 #include <softtissue/core/thread_executor.hpp>
@@ -72,7 +70,7 @@ TEST_CASE_TEMPLATE("a network of the rounded weights gives the same outputs", S,
     CHECK((outputs_of<S>(small, x) - outputs_of<S>(rounded, x)).cwiseAbs().maxCoeff() < S(1e-4));
 }
 
-TEST_CASE("threads change no bit, and inference allocates nothing") {
+TEST_CASE("threads change no bit") {
     const Mlp<float> network = trained_network<float>();
     const ThreadExecutor two(2), three(3);
     for (const WeightFormat format : small_formats) {
@@ -80,12 +78,9 @@ TEST_CASE("threads change no bit, and inference allocates nothing") {
         const MatrixX<float> x = inputs<float>(4, 2), expected = outputs_of<float>(small, x);
         CHECK(outputs_of<float>(QuantizedMlp<float>(network, format, inputs<float>(50, 3)), x) == expected);
         auto scratch = small.make_scratch(4);
-        MatrixX<float> y(700, 4), one(700, 1);
+        MatrixX<float> y(700, 4);
         for (const ThreadExecutor* const executor : {&two, &three}) {
-            const softtissue_test::AllocationCounter counter;
             small.infer_into(x, scratch, y, *executor);
-            small.infer_into(x.leftCols(1), scratch, one, *executor);
-            CHECK(counter.count() == 0);
             CHECK(y == expected);
         }
     }
