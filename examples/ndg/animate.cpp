@@ -8,6 +8,7 @@
 #include "inputs.hpp"
 
 #include <softtissue/metric/volume_change.hpp>
+#include <softtissue/ndg/network_input.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <CLI/CLI.hpp>
@@ -26,7 +27,7 @@ namespace examples {
 namespace {
 
 struct Settings {
-    std::string model, motion, out = "ndg.glb", picture;
+    std::string model, motion, out = "ndg.glb", picture, weights = "full";
     SceneFiles files;
     std::vector<double> betas;
     double frame_rate = 30.0;
@@ -50,6 +51,18 @@ Frames choose_frames(const Settings& settings, const Motion<Scalar>& motion) {
     return frames;
 }
 
+/// At most 200 of the frames.
+MatrixX<float> typical_inputs(const NeuralModel<float>& model, const Scene& scene, const Motion<Scalar>& motion,
+                              const Frames& frames) {
+    std::vector<Pose<Scalar>> poses;
+    const Index step = (frames.count + 199) / 200;
+    for (Index k = 0; k < frames.count; k += std::max<Index>(1, step)) {
+        poses.push_back(motion.poses[size_t(k * frames.stride)]);
+    }
+    return network_inputs<float, Scalar>(model, scene.skin.tree(), poses,
+                                         shape_input(model, scene.layered.mesh.rest_positions));
+}
+
 void animate(const Settings& settings) {
     watch_interrupt();
     const NeuralModel<float> model = read_model(settings.model);
@@ -58,9 +71,12 @@ void animate(const Settings& settings) {
     const Motion<Scalar> motion = read_human_motion(settings.motion, scene.body.num_joints());
     const LayeredBody<Scalar>& layered = scene.layered;
     Poisson poisson = make_poisson(layered);
-    PosingNetwork network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson, settings.threads);
-
     const Frames frames = choose_frames(settings, motion);
+    const auto small =
+        quantized(model, weight_format_of(settings.weights), typical_inputs(model, scene, motion, frames));
+    PosingNetwork network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson, settings.threads,
+                          small.get());
+
     const Index num_shots = std::min<Index>(settings.shots, frames.count);
     Animation animation(scene, {model.name}, motion.frame_rate / double(frames.stride));
     std::vector<Shot> shots;
@@ -127,6 +143,11 @@ void add_animate(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--threads", settings->threads, "threads; the result does not depend on them")
         ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        ->add_option("--weights", settings->weights,
+                     "of the network: full, or rounded to bfloat16, int8 or int4, which is faster for large networks")
+        ->check(CLI::IsMember(weight_format_names()))
         ->capture_default_str();
     command->add_option("--out", settings->out, "the animation")->capture_default_str();
     command->add_option("--picture", settings->picture, "the contact sheet (default: as the animation, .png)");

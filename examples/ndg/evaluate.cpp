@@ -23,6 +23,7 @@ namespace {
 
 struct Settings {
     std::string data, body, out = "ndg_evaluation", json;
+    std::vector<std::string> weights{"full"};
     std::vector<std::string> models;
     std::vector<std::string> methods{"gradient", "lbs", "projective", "corotated"};
     std::vector<std::string> splits{"test", "outlier"};
@@ -35,17 +36,27 @@ DatasetSplit split_of(const std::string& name) {
                          [&](DatasetSplit split) { return name == to_string(split); });
 }
 
-/// Two models of one name are told apart by their files.
-EvaluationSetup read_setup(const Settings& settings) {
+/// Every model with every kind of weights. Two models of one name are told apart by their files.
+EvaluationSetup read_setup(const Settings& settings, const DatasetFolder& data) {
     EvaluationSetup setup{
         .models = {}, .methods = settings.methods, .threads = settings.threads, .max_samples = settings.max_samples};
     for (const std::string& file : settings.models) {
-        setup.models.push_back({{}, file, read_model(file)});
+        const NeuralModel<float> model = read_model(file);
+        for (const std::string& weights : settings.weights) {
+            const WeightFormat format = weight_format_of(weights);
+            const bool needs_inputs = format == WeightFormat::int4;
+            setup.models.push_back(
+                {format == WeightFormat::full ? "" : ":" + weights, file, model,
+                 quantized(model, format, needs_inputs ? typical_inputs(data, model) : MatrixX<float>())});
+        }
     }
     for (EvaluatedModel& model : setup.models) {
-        const auto has_this_name = [&](const EvaluatedModel& other) { return other.model.name == model.model.name; };
-        const bool is_alone = std::count_if(setup.models.begin(), setup.models.end(), has_this_name) == 1;
-        model.name = model.model.name + (is_alone ? "" : "@" + std::filesystem::path(model.file).stem().string());
+        const auto has_this_name = [&](const EvaluatedModel& other) {
+            return other.model.name == model.model.name && other.file != model.file;
+        };
+        const bool is_alone = std::none_of(setup.models.begin(), setup.models.end(), has_this_name);
+        model.name =
+            model.model.name + (is_alone ? "" : "@" + std::filesystem::path(model.file).stem().string()) + model.name;
     }
     return setup;
 }
@@ -87,7 +98,7 @@ void evaluate(const Settings& settings) {
     const double begin = seconds();
     std::filesystem::create_directories(settings.out);
     const DatasetFolder data(settings.data);
-    const EvaluationSetup setup = read_setup(settings);
+    const EvaluationSetup setup = read_setup(settings, data);
     std::vector<SplitResult> splits;
     for (const std::string& name : settings.splits) {
         if (is_interrupted()) {
@@ -119,6 +130,12 @@ void add_evaluate(CLI::App& app) {
         "Trained models beside classical methods on samples that no training has seen: tables, errors on the body.");
     command->add_option("--data", settings->data, "folder of the data set")->required();
     command->add_option("--models", settings->models, "trained models (.safetensors)");
+    command
+        ->add_option("--weights", settings->weights,
+                     "of the models: full, bfloat16, int8, int4; each of those named is evaluated")
+        ->delimiter(',')
+        ->check(CLI::IsMember(weight_format_names()))
+        ->capture_default_str();
     command
         ->add_option("--methods", settings->methods,
                      "classical ones: of lbs, dqs, gradient, projective, corotated; none")

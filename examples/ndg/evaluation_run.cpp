@@ -4,6 +4,7 @@
 #include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
 
+#include <softtissue/ndg/network_input.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <algorithm>
@@ -47,8 +48,8 @@ public:
     BodyEvaluation(const DatasetFolder& data, Index body, const EvaluationSetup& setup)
         : data_(data), setup_(setup), body_(data.body(body)), methods_(body_.layered, flesh_of(data), 1) {
         for (const EvaluatedModel& model : setup.models) {
-            networks_.push_back(std::make_unique<PosingNetwork>(model.model, body_.layered, data.tree(),
-                                                                data.joint_names(), methods_.poisson(), 1));
+            networks_.push_back(std::make_unique<PosingNetwork>(
+                model.model, body_.layered, data.tree(), data.joint_names(), methods_.poisson(), 1, model.small.get()));
         }
     }
 
@@ -164,6 +165,21 @@ private:
 };
 
 }  // namespace
+
+MatrixX<float> typical_inputs(const DatasetFolder& data, const NeuralModel<float>& model) {
+    const std::vector<Index> training = data.finished(DatasetSplit::train);
+    const size_t step = (training.size() + 199) / 200;
+    MatrixX<float> inputs(model.mlp.sizes().inputs, 0);
+    for (size_t k = 0; k < training.size(); k += step) {
+        const DatasetSample sample = data.sample(training[k]);
+        const ShapedBody<double> body = data.body(data.plan().samples[size_t(training[k])].body);
+        inputs.conservativeResize(Eigen::NoChange, inputs.cols() + 1);
+        network_input_into<float, double>(model, data.tree(), sample.pose,
+                                          shape_input(model, body.layered.mesh.rest_positions),
+                                          inputs.col(inputs.cols() - 1));
+    }
+    return inputs;
+}
 
 SplitResult evaluate_split(const DatasetFolder& data, DatasetSplit split, const EvaluationSetup& setup) {
     SplitResult result;

@@ -7,7 +7,9 @@
 #include <softtissue/io/dataset_folder.hpp>
 #include <softtissue/ndg/evaluation.hpp>
 #include <softtissue/ndg/neural_model.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,7 @@ struct EvaluatedModel {
     std::string name;
     std::string file;
     NeuralModel<float> model;
+    std::shared_ptr<const QuantizedMlp<float>> small = {};  // its network in fewer bytes, if so asked
 
     /// Nothing of the source's method was taken away.
     bool is_whole() const { return model.options.exponential && model.options.rotation && model.options.shape_input; }
@@ -57,6 +60,9 @@ struct EvaluationSetup {
     int threads = 1;
     Index max_samples = 0;  // 0: all
 };
+
+/// Inputs of a model for at most 200 samples of the training.
+MatrixX<float> typical_inputs(const DatasetFolder& data, const NeuralModel<float>& model);
 
 /// The same figures for any number of threads, times excepted. Ctrl-C ends it early; what was measured until then counts.
 SplitResult evaluate_split(const DatasetFolder& data, DatasetSplit split, const EvaluationSetup& setup);

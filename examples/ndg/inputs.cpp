@@ -6,6 +6,7 @@
 
 #include <softtissue/io/neural_model_file.hpp>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace examples {
@@ -33,6 +34,27 @@ std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const
 
 NeuralModel<float> read_model(const std::string& path) {
     return read_neural_model<float>(path);
+}
+
+WeightFormat weight_format_of(const std::string& name) {
+    return *std::find_if(all_weight_formats.begin(), all_weight_formats.end(),
+                         [&](WeightFormat format) { return name == to_string(format); });
+}
+
+std::vector<std::string> weight_format_names() {
+    std::vector<std::string> names;
+    for (const WeightFormat format : all_weight_formats) {
+        names.emplace_back(to_string(format));
+    }
+    return names;
+}
+
+std::unique_ptr<const QuantizedMlp<float>> quantized(const NeuralModel<float>& model, WeightFormat format,
+                                                     const MatrixX<float>& typical_inputs) {
+    if (format == WeightFormat::full) {
+        return nullptr;
+    }
+    return std::make_unique<const QuantizedMlp<float>>(model.mlp, format, typical_inputs);
 }
 
 }  // namespace examples

@@ -6,9 +6,12 @@
 #include <softtissue/ndg/dataset_plan.hpp>
 #include <softtissue/ndg/neural_model.hpp>
 #include <softtissue/ndg/shaped_body.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
+#include <softtissue/nn/weight_format.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,5 +28,14 @@ std::vector<softtissue::DatasetClip> read_clips(const std::vector<std::string>& 
                                                 const std::vector<std::string>& held_out, softtissue::Index num_joints);
 
 softtissue::NeuralModel<float> read_model(const std::string& path);
+
+/// The format of that name; what the option --weights takes.
+softtissue::WeightFormat weight_format_of(const std::string& name);
+std::vector<std::string> weight_format_names();
+
+/// The model's network in that format; none for the full one. Typical inputs: one a column.
+std::unique_ptr<const softtissue::QuantizedMlp<float>> quantized(const softtissue::NeuralModel<float>& model,
+                                                                 softtissue::WeightFormat format,
+                                                                 const softtissue::MatrixX<float>& typical_inputs);
 
 }  // namespace examples

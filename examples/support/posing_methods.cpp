@@ -37,10 +37,10 @@ Scalar PosingMethods::start_dependence(JointTransforms transforms, const Matrix3
 
 PosingNetwork::PosingNetwork(const NeuralModel<float>& model, const LayeredBody<Scalar>& body,
                              const KinematicTree& tree, const std::vector<std::string>& joint_names, Poisson& poisson,
-                             int threads)
+                             int threads, const QuantizedMlp<float>* small)
     : executor_(threads),
       animation_(std::make_unique<NeuralAnimation<Scalar, ThreadExecutor>>(model, body, tree, joint_names, poisson,
-                                                                           executor_)) {}
+                                                                           executor_, small)) {}
 
 PosingNetwork::~PosingNetwork() = default;
 

@@ -9,6 +9,7 @@
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/ndg/layered_animation.hpp>
 #include <softtissue/ndg/neural_animation.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
 #include <memory>
 #include <span>
@@ -45,9 +46,10 @@ private:
 /// NeuralAnimation of a model in single precision.
 class PosingNetwork {
 public:
-    /// Model, body and reconstruction must outlive this.
+    /// Model, body, reconstruction and `small`, the model's network in fewer bytes, if it is there, must outlive this.
     PosingNetwork(const NeuralModel<float>& model, const LayeredBody<Scalar>& body, const KinematicTree& tree,
-                  const std::vector<std::string>& joint_names, Poisson& poisson, int threads);
+                  const std::vector<std::string>& joint_names, Poisson& poisson, int threads,
+                  const QuantizedMlp<float>* small = nullptr);
     ~PosingNetwork();
 
     void pose_into(const Pose<Scalar>& pose, JointTransforms transforms, Matrix3X<Scalar>& x);

@@ -140,6 +140,7 @@
 #include <softtissue/ndg/layered_flesh.hpp>
 #include <softtissue/ndg/linear_decoder.hpp>
 #include <softtissue/ndg/make_dataset_plan.hpp>
+#include <softtissue/ndg/network_input.hpp>
 #include <softtissue/ndg/network_training.hpp>
 #include <softtissue/ndg/neural_animation.hpp>
 #include <softtissue/ndg/neural_model.hpp>
@@ -166,6 +167,7 @@
 #include <softtissue/nn/linear.hpp>
 #include <softtissue/nn/mlp.hpp>
 #include <softtissue/nn/mlp_layers.hpp>
+#include <softtissue/nn/network_inference.hpp>
 #include <softtissue/nn/normal_distribution.hpp>
 #include <softtissue/nn/packed_rows.hpp>
 #include <softtissue/nn/parameter_tensor.hpp>

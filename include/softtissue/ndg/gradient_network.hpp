@@ -21,6 +21,8 @@
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/matrix_exponentials.hpp>
 #include <softtissue/nn/mlp.hpp>
+#include <softtissue/nn/network_inference.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -32,9 +34,9 @@ class GradientNetwork {
 public:
     using Scalar = S;
 
-    /// `mlp` must outlive this.
-    GradientNetwork(const Mlp<S>& mlp, bool exponential)
-        : mlp_(&mlp), exponential_(exponential), scratch_(mlp.make_scratch(1)) {
+    /// The networks must outlive this; `small` takes the place of `mlp` if it is there.
+    GradientNetwork(const Mlp<S>& mlp, bool exponential, const QuantizedMlp<S>* small = nullptr)
+        : network_(mlp, small), exponential_(exponential) {
         require(mlp.sizes().outputs % 9 == 0, "gradient network: ", mlp.sizes().outputs,
                 " outputs, expected nine for each cell");
         outputs_.resize(9, mlp.sizes().outputs / 9);
@@ -46,9 +48,9 @@ public:
     /// F_p^res of one input, valid until the next call.
     template <Executor E = SequentialExecutor>
     const MatrixX<S>& predict(const VectorX<S>& input, const E& executor = {}) {
-        require(input.size() == mlp_->sizes().inputs, "gradient network: ", input.size(), " inputs, expected ",
-                mlp_->sizes().inputs);
-        mlp_->infer_into(input, scratch_, outputs_.reshaped(outputs_.size(), 1), executor);
+        require(input.size() == network_.sizes().inputs, "gradient network: ", input.size(), " inputs, expected ",
+                network_.sizes().inputs);
+        network_.infer_into(input, outputs_.reshaped(outputs_.size(), 1), executor);
         if (exponential_) {
             matrix_exponentials_into<S>(outputs_, residuals_, executor);
         } else {
@@ -73,9 +75,8 @@ public:
     }
 
 private:
-    const Mlp<S>* mlp_;
+    NetworkInference<S> network_;
     bool exponential_;
-    typename Mlp<S>::Scratch scratch_;
     MatrixX<S> outputs_, residuals_;
 };
 

@@ -11,6 +11,7 @@
 /// Refuses     a body, skeleton or joint order other than the model's; a pose that is not finite; a Poisson reconstruction of
 ///             another body (InvalidInput)
 /// Source      Nolte et al. 2026, sec. 4.2 to 4.4, eq. (21)
+/// Weights     those of the model, or in fewer bytes: a QuantizedMlp of its network
 /// Cost        gradient models: network, exponentials, two triangular solves; vertex models: network and skinning
 /// Tests       tests/unit/ndg/neural_animation_test.cpp
 #pragma once
@@ -22,11 +23,12 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/ndg/body_identity.hpp>
 #include <softtissue/ndg/gradient_network.hpp>
+#include <softtissue/ndg/network_input.hpp>
 #include <softtissue/ndg/neural_model.hpp>
-#include <softtissue/ndg/pose_features.hpp>
 #include <softtissue/ndg/residual_gradients.hpp>
 #include <softtissue/ndg/rest_offsets.hpp>
 #include <softtissue/ndg/vertex_network.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 #include <softtissue/skinning/affine_transform.hpp>
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
@@ -49,10 +51,11 @@ public:
     using Scalar = S;
     using Transforms = std::span<const AffineTransform<S>>;
 
-    /// Everything but the tree and the names must outlive this; joint names may be empty.
+    /// Everything but the tree and the names must outlive this; joint names may be empty. `small` takes the place of the
+    /// model's network if it is there.
     NeuralAnimation(const NeuralModel<N>& model, const LayeredBody<S>& body, const KinematicTree& tree,
                     const std::vector<std::string>& joint_names, PoissonReconstruction<Prism6, S>& poisson,
-                    const ExecutorType& executor)
+                    const ExecutorType& executor, const QuantizedMlp<N>* small = nullptr)
         : model_(&model), body_(&body), tree_(tree), poisson_(&poisson), executor_(&executor) {
         model.validate("neural model '" + model.name + "'");
         model.body.require_same(body_identity(body, tree, joint_names), "neural model '" + model.name + "'");
@@ -60,17 +63,14 @@ public:
                 "neural animation: Poisson reconstruction of ", poisson.num_cells(), " cells, expected ",
                 body.mesh.num_cells());
         input_.resize(model.mlp.sizes().inputs);
-        if (model.options.shape_input) {
-            input_.tail(model.num_shape_inputs()) =
-                model.shape_space.encode(body.mesh.rest_positions.template cast<double>()).template cast<N>();
-        }
+        shape_ = shape_input(model, body.mesh.rest_positions);
         if (model.options.kind == NetworkKind::vertex) {
-            vertices_.emplace(model.mlp);
+            vertices_.emplace(model.mlp, small);
             require(vertices_->num_vertices() == poisson.prescribed().num_free(), "neural model '", model.name,
                     "': offsets of ", vertices_->num_vertices(), " vertices, expected those of ",
                     poisson.prescribed().num_free(), " free ones");
         } else {
-            gradients_.emplace(model.mlp, model.options.exponential);
+            gradients_.emplace(model.mlp, model.options.exponential, small);
             skinning_.emplace(poisson, body.mesh, body.weights);
         }
     }
@@ -84,7 +84,7 @@ public:
     void pose_into(const Pose<S>& pose, Transforms joint_transforms, Matrix3X<S>& x) {
         require(Index(joint_transforms.size()) == tree_.num_joints(), "neural animation: ", joint_transforms.size(),
                 " joint transforms, expected ", tree_.num_joints());
-        pose_features_into<N>(tree_, pose, input_.head(num_pose_features(tree_)));
+        network_input_into<N, S>(*model_, tree_, pose, shape_, input_);
         skin_points_into(LinearBlend<S>(), joint_transforms, body_->weights, body_->mesh.rest_positions,
                          prepared_joints_, x, *executor_);
         if (vertices_) {
@@ -126,7 +126,7 @@ private:
     std::optional<GradientNetwork<N>> gradients_;
     std::optional<VertexNetwork<N>> vertices_;
     std::optional<GradientSkinning<Prism6, S>> skinning_;
-    VectorX<N> input_;
+    VectorX<N> shape_, input_;
     MatrixX<S> prepared_joints_;
     std::vector<Matrix3<S>> root_rotations_;
     Matrix3X<S> targets_;

@@ -17,6 +17,8 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/nn/mlp.hpp>
+#include <softtissue/nn/network_inference.hpp>
+#include <softtissue/nn/quantized_mlp.hpp>
 
 namespace softtissue {
 
@@ -25,9 +27,9 @@ class VertexNetwork {
 public:
     using Scalar = S;
 
-    /// `mlp` must outlive this.
-    explicit VertexNetwork(const Mlp<S>& mlp)
-        : mlp_(&mlp), scratch_(mlp.make_scratch(1)), offsets_(mlp.sizes().outputs) {
+    /// The networks must outlive this; `small` takes the place of `mlp` if it is there.
+    explicit VertexNetwork(const Mlp<S>& mlp, const QuantizedMlp<S>* small = nullptr)
+        : network_(mlp, small), offsets_(mlp.sizes().outputs) {
         require(mlp.sizes().outputs % 3 == 0, "vertex network: ", mlp.sizes().outputs,
                 " outputs, expected three for each free vertex");
     }
@@ -37,17 +39,16 @@ public:
     /// d_v of one input, valid until the next call.
     template <Executor E = SequentialExecutor>
     const VectorX<S>& predict(const VectorX<S>& input, const E& executor = {}) {
-        require(input.size() == mlp_->sizes().inputs, "vertex network: ", input.size(), " inputs, expected ",
-                mlp_->sizes().inputs);
-        mlp_->infer_into(input, scratch_, offsets_, executor);
+        require(input.size() == network_.sizes().inputs, "vertex network: ", input.size(), " inputs, expected ",
+                network_.sizes().inputs);
+        network_.infer_into(input, offsets_, executor);
         return offsets_;
     }
 
     const VectorX<S>& offsets() const { return offsets_; }
 
 private:
-    const Mlp<S>* mlp_;
-    typename Mlp<S>::Scratch scratch_;
+    NetworkInference<S> network_;
     VectorX<S> offsets_;
 };
 

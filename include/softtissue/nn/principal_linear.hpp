@@ -9,7 +9,7 @@
 ///             roundings of P act on what varies little.
 /// Shapes      x: inputs x batch, y: outputs x batch, one sample a column; typical inputs: inputs x samples
 /// Valid       any x. Rounding of the stored P: half a step of its row each; products in float within n epsilon before that.
-/// Refuses     fewer than 8 inputs, fewer than two typical inputs or all equal, weights and biases that are not finite
+/// Refuses     fewer than two inputs, fewer than two typical inputs or all equal, weights and biases that are not finite
 ///             (InvalidInput). Arguments of other sizes are a caller's bug (SOFTTISSUE_ASSERT).
 /// Threads     same bits for every executor
 /// Cost        bytes of the weights, about 0.6 a weight, read once for up to four samples; a small product for z. The value
@@ -108,10 +108,11 @@ public:
     }
 
 private:
-    /// A sixth, and a multiple of eight for the others.
+    /// A sixth, and a multiple of eight for the others where there are enough.
     static Index leading_of(Index inputs, const std::string& name) {
-        require(inputs >= 8, name, ": ", inputs, " inputs, expected at least 8");
-        return inputs - (inputs * 5 / 6 / 8) * 8;
+        require(inputs >= 2, name, ": ", inputs, " inputs, expected at least 2");
+        const Index others = inputs * 5 / 6;
+        return inputs - (others < 8 ? others : others / 8 * 8);
     }
 
     template <class E>

@@ -11,6 +11,8 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 using namespace softtissue;
 using namespace softtissue_test;
@@ -119,6 +121,35 @@ TEST_CASE("predicted gradients are reported and not inverted; threads change no 
     NeuralAnimation<double, SequentialExecutor> vertices(offsets, scene.limb.body, scene.tree, {}, scene.poisson,
                                                          scene.executor);
     CHECK_THROWS_AS(vertices.smallest_determinant(), InvalidInput);
+}
+
+TEST_CASE("weights in fewer bytes change a pose a little, and threads change no bit of it") {
+    Scene scene;
+    const NeuralModel<float> model = random_limb_model<float>({}, 0.5);
+    const Pose<double> pose = bent_pose();
+    const Matrix3X<double> expected = scene.posed(model, pose);
+    std::vector<Pose<double>> typical(20, pose);
+    for (size_t k = 0; k < typical.size(); ++k) {
+        typical[k].rotation_vectors *= 0.1 * double(k);
+    }
+    const MatrixX<float> inputs = network_inputs<float, double>(
+        model, scene.tree, typical, shape_input(model, scene.limb.body.mesh.rest_positions));
+    const double size = (expected - scene.posed(random_limb_model<float>({}, 0.0), pose)).norm();
+    for (const WeightFormat format : {WeightFormat::bfloat16, WeightFormat::int8, WeightFormat::int4}) {
+        const QuantizedMlp<float> small(model.mlp, format, inputs);
+        const auto posed = [&](const auto& executor) {
+            NeuralAnimation<double, std::remove_cvref_t<decltype(executor)>> animation(
+                model, scene.limb.body, scene.tree, {}, scene.poisson, executor, &small);
+            Matrix3X<double> x;
+            animation.pose_into(pose, scene.transforms(pose), x);
+            return x;
+        };
+        const Matrix3X<double> x = posed(scene.executor);
+        CHECK(posed(ThreadExecutor(3)) == x);
+        const double difference = (x - expected).norm() / size;
+        CHECK(difference > 0.0);
+        CHECK(difference < (format == WeightFormat::int4 ? 0.05 : 0.01));
+    }
 }
 
 TEST_CASE("the shape reaches the network, unless it is taken away") {

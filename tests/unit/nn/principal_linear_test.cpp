@@ -88,6 +88,24 @@ TEST_CASE_TEMPLATE("any other inputs are served within the rounding of half byte
     CHECK(error_of(layer, trained, x) > 0.0);
 }
 
+TEST_CASE("layers of few inputs") {
+    const Trained<float> trained;
+    const MatrixX<float> x = inputs_like_hidden_layers<float>(20, 2);
+    for (const Index inputs : {2, 3, 8, 9, 10, 17}) {
+        const Linear<float>::WeightMatrix weight = trained.weight.leftCols(inputs);
+        const PrincipalLinear<float> layer(weight, trained.bias, x.topRows(inputs), "layer");
+        CHECK(layer.num_leading() >= 1);
+        CHECK(layer.num_leading() < inputs);
+        PrincipalLinear<float>::Scratch scratch;
+        layer.reserve(scratch, 20);
+        MatrixX<float> y(rows, 20), expected = trained.bias.replicate(1, 20);
+        layer.forward_into(x.topRows(inputs), scratch, y);
+        const MatrixX<float> few = x.topRows(inputs);
+        add_batch_product<float>(weight.data(), few, expected);
+        CHECK((y - expected).norm() < 0.1F * expected.norm());
+    }
+}
+
 TEST_CASE("threads change no bit") {
     const Trained<float> trained;
     const MatrixX<float> x = inputs_like_hidden_layers<float>(5, 3);
@@ -116,8 +134,8 @@ TEST_CASE("few or equal typical inputs and weights that are not finite are refus
     CHECK(make(MatrixX<float>::Ones(depth, 3)) ==
           "network: 3.weight: 3 typical inputs, expected at least two that differ");
     CHECK(make(typical.leftCols(1)) == "network: 3.weight: 1 typical inputs, expected at least two that differ");
-    CHECK(refusal([&] { PrincipalLinear<float>(trained.weight.leftCols(7), trained.bias, typical.topRows(7), "w"); }) ==
-          "w: 7 inputs, expected at least 8");
+    CHECK(refusal([&] { PrincipalLinear<float>(trained.weight.leftCols(1), trained.bias, typical.topRows(1), "w"); }) ==
+          "w: 1 inputs, expected at least 2");
     trained.weight(3, 4) = std::numeric_limits<float>::quiet_NaN();
     CHECK(make(typical) == "network: 3.weight: weight (3, 4) is nan, expected a finite number");
 }
