@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Element kernels, in cells or points per second.
+#include "machine_limits.hpp"
+
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
 #include <softtissue/testing/random_states.hpp>
@@ -49,27 +51,27 @@ void run(benchmark::State& state, const char* unit, const Kernel& kernel) {
         }
         benchmark::ClobberMemory();
     }
-    state.counters[unit] = benchmark::Counter(double(cells.size()), benchmark::Counter::kIsIterationInvariantRate);
+    benchmarks::count_work<Scalar>(state, {.unit = unit, .items = double(cells.size())});
 }
 
 template <class E, class Scalar>
 void rest_volume(benchmark::State& state) {
-    run<E, Scalar>(state, "cells/s", [](const auto& X) { return E::rest_volume(X); });
+    run<E, Scalar>(state, "cells", [](const auto& X) { return E::rest_volume(X); });
 }
 
 template <class E, class Scalar>
 void smallest_jacobian_bound(benchmark::State& state) {
-    run<E, Scalar>(state, "cells/s", [](const auto& X) { return E::smallest_jacobian_bound(X); });
+    run<E, Scalar>(state, "cells", [](const auto& X) { return E::smallest_jacobian_bound(X); });
 }
 
 template <class E, class Scalar>
 void gradient_operator(benchmark::State& state) {
-    run<E, Scalar>(state, "cells/s", [](const auto& X) { return E::gradient_operator(X); });
+    run<E, Scalar>(state, "cells", [](const auto& X) { return E::gradient_operator(X); });
 }
 
 template <class E, class Scalar>
 void natural_coordinates(benchmark::State& state) {
-    run<E, Scalar>(state, "points/s", [](const auto& X) {
+    run<E, Scalar>(state, "points", [](const auto& X) {
         const Vector3<Scalar> p(Scalar(0.3), Scalar(0.25), Scalar(0.2));
         return E::natural_coordinates(X, p);
     });
@@ -78,7 +80,7 @@ void natural_coordinates(benchmark::State& state) {
 /// The baseline: Newton in three unknowns from the middle, ten steps.
 template <class Scalar>
 void naive_natural_coordinates(benchmark::State& state) {
-    run<Prism6, Scalar>(state, "points/s", [](const auto& X) {
+    run<Prism6, Scalar>(state, "points", [](const auto& X) {
         const Vector3<Scalar> p(Scalar(0.3), Scalar(0.25), Scalar(0.2));
         Vector3<Scalar> xi(Scalar(1) / 3, Scalar(1) / 3, 0);
         for (int step = 0; step < 10; ++step) {
@@ -92,15 +94,16 @@ void naive_natural_coordinates(benchmark::State& state) {
     });
 }
 
-BENCHMARK_TEMPLATE(rest_volume, Tet4, double);
-BENCHMARK_TEMPLATE(rest_volume, Prism6, double);
-BENCHMARK_TEMPLATE(smallest_jacobian_bound, Tet4, double);
-BENCHMARK_TEMPLATE(smallest_jacobian_bound, Prism6, double);
-BENCHMARK_TEMPLATE(gradient_operator, Tet4, double);
-BENCHMARK_TEMPLATE(gradient_operator, Prism6, double);
-BENCHMARK_TEMPLATE(gradient_operator, Prism6, float);
-BENCHMARK_TEMPLATE(natural_coordinates, Tet4, double);
-BENCHMARK_TEMPLATE(natural_coordinates, Prism6, double);
-BENCHMARK_TEMPLATE(naive_natural_coordinates, double);
+BENCHMARK_TEMPLATE(rest_volume, Tet4, double)->Name("rest volume of a tet/double");
+BENCHMARK_TEMPLATE(rest_volume, Prism6, double)->Name("rest volume of a prism/double");
+BENCHMARK_TEMPLATE(smallest_jacobian_bound, Tet4, double)->Name("bound of the Jacobian of a tet/double");
+BENCHMARK_TEMPLATE(smallest_jacobian_bound, Prism6, double)->Name("bound of the Jacobian of a prism/double");
+BENCHMARK_TEMPLATE(gradient_operator, Tet4, double)->Name("gradient operator of a tet/double");
+BENCHMARK_TEMPLATE(gradient_operator, Prism6, double)->Name("gradient operator of a prism/double");
+BENCHMARK_TEMPLATE(natural_coordinates, Tet4, double)->Name("natural coordinates of a tet/double");
+BENCHMARK_TEMPLATE(natural_coordinates, Prism6, double)->Name("natural coordinates of a prism/double");
+BENCHMARK_TEMPLATE(gradient_operator, Prism6, float)->Name("gradient operator of a prism/float");
+BENCHMARK_TEMPLATE(naive_natural_coordinates, double)
+    ->Name("natural coordinates of a prism/baseline ten steps of Newton in three unknowns, double");
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Skinning kernels on a generated tube body of SMPL's size and sparsity; and the same body by dense arrays.
 
+#include "machine_limits.hpp"
+
 #include <softtissue/skinning/blended_rotation.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/inverse.hpp>
@@ -67,8 +69,12 @@ Pose<S> walking_pose() {
     return pose;
 }
 
-void count_rows(benchmark::State& state) {
-    state.counters["rows/s"] = benchmark::Counter(double(state.range(0)), benchmark::Counter::kIsIterationInvariantRate);
+template <class S>
+void count_vertices(benchmark::State& state, double bytes_read = 0, double bytes_written = 0) {
+    benchmarks::count_work<S>(state, {.unit = "vertices",
+                                      .items = double(state.range(0)),
+                                      .bytes_read = bytes_read,
+                                      .bytes_written = bytes_written});
 }
 
 template <class Policy>
@@ -82,7 +88,7 @@ void pose_body(benchmark::State& state) {
         benchmark::DoNotOptimize(posed.positions.data());
         benchmark::ClobberMemory();
     }
-    count_rows(state);
+    count_vertices<S>(state);
 }
 
 /// Baseline: dense weights and dense pose blend shapes, as the definition reads.
@@ -112,7 +118,7 @@ void naive_pose_body(benchmark::State& state) {
         benchmark::DoNotOptimize(positions.data());
         benchmark::ClobberMemory();
     }
-    count_rows(state);
+    count_vertices<S>(state);
 }
 
 template <class S>
@@ -125,7 +131,7 @@ void unpose_body(benchmark::State& state) {
         benchmark::DoNotOptimize(u.data());
         benchmark::ClobberMemory();
     }
-    count_rows(state);
+    count_vertices<S>(state);
 }
 
 template <class Policy>
@@ -136,7 +142,7 @@ void check_body(benchmark::State& state) {
     for (auto _ : state) {
         benchmark::DoNotOptimize(check_blends<S>(posed.transforms));
     }
-    count_rows(state);
+    count_vertices<S>(state);
 }
 
 template <class S>
@@ -151,21 +157,29 @@ void blend_rotations(benchmark::State& state) {
         benchmark::DoNotOptimize(rotations.data());
         benchmark::ClobberMemory();
     }
-    count_rows(state);
+    count_vertices<S>(state);
 }
 
 constexpr Index smpl_size = 6890, large_size = 50000;
 
 }  // namespace
 
-BENCHMARK(pose_body<LinearBlend<double>>)->Arg(1000)->Arg(smpl_size)->Arg(large_size);
-BENCHMARK(pose_body<LinearBlend<float>>)->Arg(smpl_size);
-BENCHMARK(pose_body<DualQuaternion<double>>)->Arg(1000)->Arg(smpl_size)->Arg(large_size);
-BENCHMARK(pose_body<DualQuaternion<float>>)->Arg(smpl_size);
-BENCHMARK(naive_pose_body<double>)->Arg(smpl_size);
-BENCHMARK(unpose_body<double>)->Arg(smpl_size);
-BENCHMARK(unpose_body<float>)->Arg(smpl_size);
-BENCHMARK(check_body<LinearBlend<double>>)->Arg(smpl_size);
-BENCHMARK(check_body<DualQuaternion<double>>)->Arg(smpl_size);
-BENCHMARK(blend_rotations<double>)->Arg(smpl_size)->Arg(large_size);
-BENCHMARK(blend_rotations<float>)->Arg(smpl_size);
+BENCHMARK(pose_body<LinearBlend<float>>)->Name("14 posing a body/linear blending, float")->Arg(smpl_size);
+BENCHMARK(pose_body<LinearBlend<double>>)
+    ->Name("14 posing a body/linear blending, double")
+    ->Arg(1000)
+    ->Arg(smpl_size)
+    ->Arg(large_size);
+BENCHMARK(pose_body<DualQuaternion<float>>)->Name("14 posing a body/dual quaternions, float")->Arg(smpl_size);
+BENCHMARK(pose_body<DualQuaternion<double>>)
+    ->Name("14 posing a body/dual quaternions, double")
+    ->Arg(1000)
+    ->Arg(smpl_size)
+    ->Arg(large_size);
+BENCHMARK(naive_pose_body<double>)->Name("14 posing a body/baseline dense arrays in double precision")->Arg(smpl_size);
+BENCHMARK(unpose_body<float>)->Name("unposing a body/float")->Arg(smpl_size);
+BENCHMARK(unpose_body<double>)->Name("unposing a body/double")->Arg(smpl_size);
+BENCHMARK(check_body<LinearBlend<double>>)->Name("checking blends/linear, double")->Arg(smpl_size);
+BENCHMARK(check_body<DualQuaternion<double>>)->Name("checking blends/dual quaternions, double")->Arg(smpl_size);
+BENCHMARK(blend_rotations<float>)->Name("blended rotations/float")->Arg(smpl_size);
+BENCHMARK(blend_rotations<double>)->Name("blended rotations/double")->Arg(smpl_size)->Arg(large_size);

@@ -3,6 +3,8 @@
 // sides, a frame of it, and a Newton system in 3x3 blocks, each beside Eigen's and, where it is there, CHOLMOD's. CHOLMOD is at
 // its best with OMP_THREAD_LIMIT=1 and a BLAS that knows the processor (OpenBLAS: OPENBLAS_CORETYPE).
 
+#include "machine_limits.hpp"
+
 #include <softtissue/core/random.hpp>
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/element/prism6.hpp>
@@ -162,23 +164,12 @@ void solve_poisson(benchmark::State& state) {
         factor.solve_in_place(y);
         benchmark::DoNotOptimize(y.data());
     }
-    state.counters["entries"] = double(factor.num_entries());
-    const double bytes = 2.0 * double(factor.num_entries()) * (double(sizeof(Scalar)) + 1.0);
-    state.counters["bytes/s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
-}
-
-/// As many bytes as a solve reads, twice: the limit.
-template <class Scalar>
-void read_factor(benchmark::State& state) {
-    const CholeskyFactor<Scalar> factor(poisson_matrix(), "benchmark");
-    const VectorX<Scalar> values =
-        VectorX<Scalar>::Ones(factor.num_entries() + factor.num_entries() / Index(sizeof(Scalar)));
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(values.sum());
-        benchmark::DoNotOptimize(values.sum());
-    }
-    const double bytes = 2.0 * double(values.size()) * double(sizeof(Scalar));
-    state.counters["bytes/s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+    const double entries = double(factor.num_entries()), bytes = entries * (double(sizeof(Scalar)) + 1.0);
+    benchmarks::count_work<Scalar>(state, {.unit = "unknowns",
+                                           .items = double(factor.num_places()),
+                                           .flops = 2 * 2 * 3 * entries,
+                                           .bytes_read = 2 * bytes,
+                                           .working_set = bytes});
 }
 
 template <class Cholesky>
@@ -237,19 +228,52 @@ void poisson_frame_of_eigen(benchmark::State& state) {
     }
 }
 
-BENCHMARK(solve_poisson<float>)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_poisson<double>)->Unit(benchmark::kMillisecond);
-BENCHMARK(read_factor<float>)->Unit(benchmark::kMillisecond);
-BENCHMARK(read_factor<double>)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_poisson_with<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(poisson_frame<float>)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(poisson_frame<double>)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(poisson_frame_of_eigen)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_system<SupernodalCholesky<float>, float>)->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_system<SupernodalCholesky<double>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_system<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(analyze_flesh<SupernodalCholesky<double>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(analyze_flesh<Eigen::SimplicialLLT<SparseMatrix>>)->Unit(benchmark::kMillisecond);
+#define SOFTTISSUE_POISSON_SOLVE "1 Poisson, two triangular solves, three right-hand sides/"
+#define SOFTTISSUE_POISSON_FRAME "2 Poisson, a frame/"
+#define SOFTTISSUE_NEWTON_SYSTEM "7 a Newton system, factor and solve/"
+#define SOFTTISSUE_ANALYSIS "a Newton system, analysis/"
+
+void in_milliseconds(benchmark::internal::Benchmark* one) {
+    one->Unit(benchmark::kMillisecond);
+}
+/// Beside what may use several threads.
+void by_the_clock(benchmark::internal::Benchmark* one) {
+    one->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+BENCHMARK(solve_poisson<float>)->Name(SOFTTISSUE_POISSON_SOLVE "float")->Apply(by_the_clock);
+BENCHMARK(solve_poisson<double>)->Name(SOFTTISSUE_POISSON_SOLVE "double")->Apply(by_the_clock);
+BENCHMARK(solve_poisson_with<Eigen::SimplicialLLT<SparseMatrix>>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "baseline Eigen SimplicialLLT AMD")
+    ->Apply(by_the_clock);
+BENCHMARK(poisson_frame<float>)
+    ->Name(SOFTTISSUE_POISSON_FRAME "float")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Apply(by_the_clock);
+BENCHMARK(poisson_frame<double>)
+    ->Name(SOFTTISSUE_POISSON_FRAME "double")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Apply(by_the_clock);
+BENCHMARK(poisson_frame_of_eigen)
+    ->Name(SOFTTISSUE_POISSON_FRAME "baseline Eigen, a sparse product and SimplicialLLT")
+    ->Apply(by_the_clock);
+BENCHMARK(newton_system<SupernodalCholesky<float>, float>)
+    ->Name(SOFTTISSUE_NEWTON_SYSTEM "supernodal, float")
+    ->Apply(in_milliseconds);
+BENCHMARK(newton_system<SupernodalCholesky<double>>)
+    ->Name(SOFTTISSUE_NEWTON_SYSTEM "supernodal, double")
+    ->Apply(in_milliseconds);
+BENCHMARK(newton_system<Eigen::SimplicialLLT<SparseMatrix>>)
+    ->Name(SOFTTISSUE_NEWTON_SYSTEM "baseline Eigen SimplicialLLT AMD")
+    ->Apply(in_milliseconds);
+BENCHMARK(analyze_flesh<SupernodalCholesky<double>>)->Name(SOFTTISSUE_ANALYSIS "double")->Apply(in_milliseconds);
+BENCHMARK(analyze_flesh<Eigen::SimplicialLLT<SparseMatrix>>)
+    ->Name(SOFTTISSUE_ANALYSIS "baseline Eigen SimplicialLLT AMD")
+    ->Apply(in_milliseconds);
 
 #ifdef SOFTTISSUE_HAS_CHOLMOD
 
@@ -303,14 +327,27 @@ private:
     cholmod_dense* e_ = nullptr;
 };
 
-BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(analyze_flesh<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)->Unit(benchmark::kMillisecond);
-BENCHMARK(analyze_flesh<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_AMD>>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "baseline CHOLMOD simplicial AMD")
+    ->Apply(by_the_clock);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SIMPLICIAL, CHOLMOD_METIS>>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "baseline CHOLMOD simplicial METIS")
+    ->Apply(by_the_clock);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "baseline CHOLMOD supernodal AMD")
+    ->Apply(by_the_clock);
+BENCHMARK(solve_poisson_with<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "baseline CHOLMOD supernodal METIS")
+    ->Apply(by_the_clock);
+BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)
+    ->Name(SOFTTISSUE_NEWTON_SYSTEM "baseline CHOLMOD supernodal AMD")
+    ->Apply(in_milliseconds);
+BENCHMARK(newton_system<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_METIS>>)
+    ->Name(SOFTTISSUE_NEWTON_SYSTEM "baseline CHOLMOD supernodal METIS")
+    ->Apply(in_milliseconds);
+BENCHMARK(analyze_flesh<Cholmod<CHOLMOD_SUPERNODAL, CHOLMOD_AMD>>)
+    ->Name(SOFTTISSUE_ANALYSIS "baseline CHOLMOD supernodal AMD")
+    ->Apply(in_milliseconds);
 
 #endif
 

@@ -65,8 +65,8 @@ check_cmake() {
     version=$(cmake --version | sed -n 's/^cmake version \([0-9]*\)\.\([0-9]*\).*/\1 \2/p')
     # shellcheck disable=SC2086
     set -- $version
-    if [ "$1" -lt 3 ] || { [ "$1" -eq 3 ] && [ "$2" -lt 24 ]; }; then
-        echo "CMake $1.$2 is too old, 3.24 is needed (Debian 12, Ubuntu 24.04 or newer have it)." >&2
+    if [ "$1" -lt 3 ] || { [ "$1" -eq 3 ] && [ "$2" -lt 25 ]; }; then
+        echo "CMake $1.$2 is too old, 3.25 is needed (Debian 12, Ubuntu 24.04 or newer have it)." >&2
         exit 1
     fi
 }

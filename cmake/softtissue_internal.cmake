@@ -2,6 +2,9 @@
 # are timed this machine's instructions. None of it is exported.
 find_package(Threads REQUIRED)
 
+set(SOFTTISSUE_SHARED_DIR "${PROJECT_SOURCE_DIR}/../shared" CACHE PATH
+    "Folder with the reference cases, bodies and motions that some tests read; those tests are skipped without it, benchmarks take the embedded body")
+
 if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     find_program(SOFTTISSUE_CCACHE ccache)
     mark_as_advanced(SOFTTISSUE_CCACHE)

@@ -1,5 +1,5 @@
 # Checks what every header has and has not.   cmake -D INCLUDE_DIR=<include> -P header_form.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 

@@ -1,6 +1,6 @@
 # Checks that every header has a unit test of the same path, and that the tests a header names exist.
 #   cmake -D ROOT=<repository> -P header_tests.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 

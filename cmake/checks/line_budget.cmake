@@ -3,7 +3,7 @@
 #   cmake -D INCLUDE_DIR=<include> -D CXX=<g++> -D EIGEN_INCLUDE_DIR=<dir> -D BUDGET=<file> -D TOOLS=<text>
 #         [-D UPDATE=ON] -P line_budget.cmake
 # TOOLS names compiler and Eigen: line counts compare between equal tools only.
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 

@@ -1,6 +1,6 @@
 # Compiles one source and checks that it fails with the text it names, or compiles if it names success.
 #   cmake -D SOURCE=<file> -D CXX=<compiler> -D INCLUDE_DIRS=<list> -P must_not_compile.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 
 file(READ "${SOURCE}" text)
 if(NOT text MATCHES "// expect: ([^\n]+)\n")

@@ -1,6 +1,6 @@
 # Proves that the checks of headers catch what they are there for: each runs on a small wrong tree.
 #   cmake -D WORK_DIR=<empty folder> -P self_test.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 
 set(good "// SPDX-License-Identifier: MIT\n/// @file\n/// A header.\n#pragma once\n")
 

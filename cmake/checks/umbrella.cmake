@@ -1,7 +1,7 @@
 # Checks that the umbrella includes exactly the headers below floor 7 that need Eigen only, in alphabetical order.
 # With -D UPDATE=ON it rewrites the list instead.
 #   cmake -D INCLUDE_DIR=<include> [-D UPDATE=ON] -P umbrella.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/../softtissue_headers.cmake")
 
 softtissue_list_headers(headers "${INCLUDE_DIR}")

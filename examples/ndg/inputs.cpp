@@ -13,10 +13,6 @@ namespace examples {
 
 using namespace softtissue;
 
-BodyFunction layered_bodies(const SmplBody<double>& body) {
-    return ShapedBodyMaker<double>(body);
-}
-
 std::vector<DatasetClip> read_clips(const std::vector<std::string>& paths, const std::vector<std::string>& held_out,
                                     Index num_joints) {
     std::vector<DatasetClip> clips;

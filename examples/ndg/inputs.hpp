@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// Bodies, motions and models that the subcommands start from.
+/// Motions and models that the subcommands start from.
 #pragma once
+
+#include "../support/layered_human.hpp"
 
 #include <softtissue/ndg/dataset_plan.hpp>
 #include <softtissue/ndg/neural_model.hpp>
-#include <softtissue/ndg/shaped_body.hpp>
 #include <softtissue/nn/quantized_mlp.hpp>
 #include <softtissue/nn/weight_format.hpp>
-#include <softtissue/skinning/smpl_body.hpp>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace examples {
-
-/// From shape coefficients to layered bodies.
-using BodyFunction = std::function<softtissue::ShapedBody<double>(const softtissue::VectorX<double>&)>;
-
-/// Those of a body.
-BodyFunction layered_bodies(const softtissue::SmplBody<double>& body);
 
 /// The motions in files of AMASS's layout, the second ones held out; the embedded one if there are none.
 std::vector<softtissue::DatasetClip> read_clips(const std::vector<std::string>& paths,

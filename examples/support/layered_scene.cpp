@@ -2,8 +2,8 @@
 #include "layered_scene.hpp"
 
 #include "embedded_human.hpp"
+#include "layered_human.hpp"
 
-#include <softtissue/anatomy/make_layered_body.hpp>
 #include <softtissue/io/obj.hpp>
 #include <softtissue/model/procedural_anatomy.hpp>
 
@@ -60,7 +60,7 @@ SmplBody<Scalar> shaped_body(const std::string& file, const VectorX<Scalar>& bet
 Scene make_scene(const SceneFiles& files, const VectorX<Scalar>& betas) {
     SmplBody<Scalar> body = shaped_body(files.body, betas);
     VolumetricSmpl<Scalar> skin(body, {}, {.pose_correctives = false});
-    LayeredBody<Scalar> layered = make_layered_body(body);
+    LayeredBody<Scalar> layered = layered_body_of(body);
     const Triangles& triangles = layered.region.triangles;
     const Matrix3X<Scalar> bone_wrap = layered.level_positions(0);
     BoneInterior<Scalar> interior = join_to_layers(make_bone_interior(bone_wrap, triangles, layered.column_weights()),

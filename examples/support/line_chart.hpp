@@ -16,11 +16,14 @@
 
 namespace examples {
 
-/// One line; it is broken where a value cannot be drawn (not finite, or not positive on a logarithmic axis).
+/// One line; it is broken where a value cannot be drawn (not finite, or not positive on a logarithmic axis). Without its line:
+/// the points, each with its label if there are labels.
 struct LineSeries {
     std::string name = {};
     std::vector<double> x = {}, y = {};
     bool is_dashed = false;
+    bool has_line = true;
+    std::vector<std::string> labels = {};
 };
 
 /// A dotted vertical line with a label at its top.
@@ -107,6 +110,11 @@ private:
         cairo_stroke(picture_.context());
     }
 
+    void dot(double x, double y) {
+        cairo_arc(picture_.context(), x, y, 3.4, 0.0, 4.0 * std::acos(0.0));
+        cairo_fill(picture_.context());
+    }
+
     /// In rows above the plot, which begins below it.
     void draw_legend() {
         cairo_t* const cairo = picture_.context();
@@ -119,7 +127,11 @@ private:
             }
             set_color(series_color(k));
             set_stroke(chart_.series[k]);
-            stroke(x, top_ - 33.0, x + 26.0, top_ - 33.0);
+            if (chart_.series[k].has_line) {
+                stroke(x, top_ - 33.0, x + 26.0, top_ - 33.0);
+            } else {
+                dot(x + 13.0, top_ - 33.0);
+            }
             cairo_set_dash(cairo, nullptr, 0, 0.0);
             picture_.text(chart_.series[k].name, x + 33.0, top_ - 28.0, 15);
             x += width + 10.0;
@@ -173,6 +185,9 @@ private:
 
     void draw_line(const LineSeries& series, const Eigen::Vector3f& color) {
         cairo_t* const cairo = picture_.context();
+        if (!series.has_line) {
+            return;
+        }
         set_color(color);
         set_stroke(series);
         bool is_open = false;
@@ -191,12 +206,15 @@ private:
 
     /// Where there are few.
     void draw_points(const LineSeries& series, const Eigen::Vector3f& color) {
-        set_color(color);
-        for (size_t k = 0; k < series.x.size() && series.x.size() <= 40 && !series.is_dashed; ++k) {
+        const bool are_wanted = !series.has_line || (series.x.size() <= 40 && !series.is_dashed);
+        for (size_t k = 0; k < series.x.size() && are_wanted; ++k) {
             if (x_axis_.shows(series.x[k]) && y_axis_.shows(series.y[k])) {
-                cairo_arc(picture_.context(), pixel_x(series.x[k]), pixel_y(series.y[k]), 3.4, 0.0,
-                          4.0 * std::acos(0.0));
-                cairo_fill(picture_.context());
+                const double x = pixel_x(series.x[k]), y = pixel_y(series.y[k]);
+                set_color(color);
+                dot(x, y);
+                if (k < series.labels.size()) {
+                    picture_.text(series.labels[k], x + 6.0, y - 5.0, 13);
+                }
             }
         }
     }

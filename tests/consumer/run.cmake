@@ -1,7 +1,7 @@
 # Uses softtissue as a stranger's project does.
 #   cmake -D KIND=find_package|add_subdirectory|pkg_config -D CXX=<compiler> -D SOURCE_DIR=<repository>
 #         -D BINARY_DIR=<its build> -D WORK_DIR=<scratch> -D VERSION=<expected> -D GENERATOR=<name> -P run.cmake
-cmake_minimum_required(VERSION 3.24)
+cmake_minimum_required(VERSION 3.25)
 
 function(run)
     execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
