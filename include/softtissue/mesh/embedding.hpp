@@ -24,6 +24,7 @@
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
@@ -102,13 +103,21 @@ public:
     template <Executor Exec = SequentialExecutor>
     void apply_into(ConstRef<Matrix3X<S>> x, Eigen::Ref<Matrix3X<S>> out, const Exec& executor = {}) const {
         SOFTTISSUE_ASSERT(x.cols() >= num_vertices_ && out.cols() == num_points());
+        const bool is_dense = x.outerStride() == 3 && out.outerStride() == 3;
         executor.for_each_range(num_points(), [&](Index begin, Index end) {
+            const S* const from = x.data();
+            S* const to = out.data();
+            auto careful = std::lower_bound(at_last_vertex_.begin(), at_last_vertex_.end(), begin);
             for (Index p = begin; p < end; ++p) {
-                Vector3<S> sum = Vector3<S>::Zero();
-                for (int i = 0; i < width; ++i) {
-                    sum += weights_(i, p) * x.col(indices_(i, p));
+                // Four numbers at a time, of which the fourth is the next column's; where there may be no next one, three.
+                const Index next = careful != at_last_vertex_.end() ? *careful : end;
+                for (const Index stop = is_dense ? std::min(next, end - 1) : p; p < stop; ++p) {
+                    position(p, [from](Index v) { return Four::load(from + 3 * v); }).store(to + 3 * p);
                 }
-                out.col(p) = sum;
+                const Four sum = position(
+                    p, [&](std::int32_t v) { return Four::from_lanes([&](int d) { return d < 3 ? x(d, v) : S(0); }); });
+                out.col(p) << sum[0], sum[1], sum[2];
+                careful += p == next ? 1 : 0;
             }
         });
     }
@@ -120,6 +129,7 @@ public:
         result.num_vertices_ = num_vertices_;
         result.indices_ = indices_;
         result.weights_ = weights_.template cast<T>();
+        result.at_last_vertex_ = at_last_vertex_;
         result.cells_ = cells_;
         result.distances_ = distances_.template cast<T>();
         result.report_ = {report_.num_outside, static_cast<T>(report_.largest_distance), report_.farthest_point};
@@ -127,6 +137,20 @@ public:
     }
 
 private:
+    using Four = Pack<S, 4>;
+
+    /// Of a point; at(v) are the coordinates of a vertex.
+    template <class At>
+    [[gnu::always_inline]] inline Four position(Index p, const At& at) const {
+        const std::int32_t* const v = indices_.data() + width * p;
+        const S* const w = weights_.data() + width * p;
+        Four sum = Four(w[0]) * at(v[0]);
+        for (int i = 1; i < width; ++i) {
+            sum += Four(w[i]) * at(v[i]);
+        }
+        return sum;
+    }
+
     template <RealScalar T>
     friend class Embedding;
 
@@ -170,6 +194,11 @@ private:
                 place(p, points.col(p), tree, meshes...);
             }
         });
+        for (Index p = 0; p < num_points(); ++p) {
+            if (indices_.col(p).maxCoeff() == num_vertices_ - 1) {
+                at_last_vertex_.push_back(p);
+            }
+        }
         make_report(tree);
     }
 
@@ -237,6 +266,7 @@ private:
     Index num_vertices_ = 0;
     Indices indices_;
     Weights weights_;
+    std::vector<Index> at_last_vertex_;  ///< points that move with it, ascending
     std::vector<std::int32_t> cells_;
     VectorX<S> distances_;
     EmbeddingReport<S> report_;

@@ -294,6 +294,39 @@ TEST_CASE("the same bits for any number of threads, and no allocation in a frame
     }
 }
 
+TEST_CASE_TEMPLATE(
+    "every point is the weighted sum of its nodes, in arrays of any stride, next to which nothing changes", S, float,
+    double) {
+    const Block<S> block;
+    Matrix3X<S> points = points_around<S>(60);
+    const Index last = block.prisms.num_vertices() - 1;
+    for (const Index p : {0, 7, 8, 59}) {
+        points.col(p) = block.prisms.rest_positions.col(last);  // what is read there must not reach beyond the array
+    }
+    const Embedding<S> embedding(points, block.prisms, block.tets);
+    CHECK(embedding.indices().col(59).maxCoeff() == last);
+    const Matrix3X<S> x = block.deformed(6);
+    const Matrix3X<S> y = apply<S>(embedding, x);
+    MatrixX<S> wide_x = MatrixX<S>::Constant(4, x.cols(), S(7)), wide_y = MatrixX<S>::Constant(4, 60, S(7));
+    wide_x.topRows(3) = x;
+    embedding.apply_into(wide_x.topRows(3), wide_y.topRows(3));
+    CHECK(wide_y.topRows(3) == y);
+    CHECK((wide_y.row(3).array() == S(7)).all());
+    MatrixX<S> part = MatrixX<S>::Constant(3, 62, S(7));
+    embedding.apply_into(x, part.middleCols(1, 60));
+    CHECK(part.middleCols(1, 60) == y);
+    CHECK((part.col(61).array() == S(7)).all());
+    for (Index p = 0; p < 60; ++p) {
+        Vector3<S> sum = Vector3<S>::Zero();
+        for (int i = 0; i < 6; ++i) {
+            sum += embedding.weights()(i, p) * x.col(embedding.indices()(i, p));
+        }
+        CHECK((sum - y.col(p)).cwiseAbs().maxCoeff() <= S(8) * std::numeric_limits<S>::epsilon() *
+                                                            x.cwiseAbs().maxCoeff() *
+                                                            embedding.weights().col(p).cwiseAbs().sum());
+    }
+}
+
 TEST_CASE("no points are no trouble") {
     const Block<double> block;
     const Embedding<double> embedding(Matrix3X<double>(3, 0), block.tets);
