@@ -4,7 +4,7 @@
 ///
 /// What        PrincipalLinear: value of a batch of columns
 /// Equation    y = W x + b = P z + (b + W m),  z = V^T (x - m),  P = W V; V orthogonal, its first columns span the directions in
-///             which typical inputs vary most around their mean m. P is stored by Int8Weights for a sixth of the directions,
+///             which typical inputs vary most around their mean m. P is stored by Int8Weights for an eighth of the directions,
 ///             those first, by Int4Weights for the others. What typical inputs have in common costs no accuracy, and
 ///             roundings of P act on what varies little.
 /// Shapes      x: inputs x batch, y: outputs x batch, one sample a column; typical inputs: inputs x samples
@@ -108,10 +108,10 @@ public:
     }
 
 private:
-    /// A sixth, and a multiple of eight for the others where there are enough.
+    /// An eighth or more, so that a multiple of eight is left where there is enough.
     static Index leading_of(Index inputs, const std::string& name) {
         require(inputs >= 2, name, ": ", inputs, " inputs, expected at least 2");
-        const Index others = inputs * 5 / 6;
+        const Index others = inputs * 7 / 8;
         return inputs - (others < 8 ? others : others / 8 * 8);
     }
 

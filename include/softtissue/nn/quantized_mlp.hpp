@@ -42,8 +42,8 @@ template <RealScalar S, Activation A = Gelu>
 class QuantizedMlp {
 public:
     using Scalar = S;
-    using HiddenLayer = QuantizedLinear<S, BFloat16Weights>;
-    using LastLayer = std::variant<HiddenLayer, QuantizedLinear<S, Int8Weights>, PrincipalLinear<S>>;
+    using Layer =
+        std::variant<QuantizedLinear<S, BFloat16Weights>, QuantizedLinear<S, Int8Weights>, PrincipalLinear<S>>;
 
     /// What inference writes to; one for each thread that infers.
     struct Scratch {
@@ -57,31 +57,39 @@ public:
     template <Executor E = SequentialExecutor>
     QuantizedMlp(const Mlp<S, A>& mlp, WeightFormat format, const MatrixX<S>& typical_inputs = {},
                  const E& executor = {})
-        : layers_(mlp.sizes()), last_(make_last(mlp, format, typical_inputs, executor)) {
-        for (Index k = 0; k < layers_.num_hidden(); ++k) {
-            hidden_.emplace_back(mlp.weight(k), mlp.bias(k), name(k), executor);
+        : layers_(mlp.sizes()) {
+        require(format != WeightFormat::full, "network: weights of the format ", to_string(format),
+                ", expected one with fewer bytes than the trained ones");
+        const Index last = layers_.num_hidden();
+        for (Index k = 0; k < last; ++k) {
+            const bool is_between = k > 0 && k + 1 < last;
+            add_layer(mlp, k, format == WeightFormat::int4 && is_between ? WeightFormat::int8 : WeightFormat::bfloat16,
+                      typical_inputs, executor);
             norm_parameters_.emplace_back(layers_.norm_parameters(mlp.parameters(), k));
         }
+        add_layer(mlp, last, format, typical_inputs, executor);
     }
 
     const MlpSizes& sizes() const { return layers_.sizes(); }
-    const HiddenLayer& hidden(Index layer) const { return hidden_[size_t(layer)]; }
-    const LastLayer& last() const { return last_; }
+    /// Layer sizes().hidden.size() is the last.
+    const Layer& linear(Index layer) const { return linear_[size_t(layer)]; }
 
     std::size_t num_bytes() const {
-        std::size_t bytes = std::visit([](const auto& layer) { return layer.num_bytes(); }, last_);
-        for (size_t k = 0; k < hidden_.size(); ++k) {
-            bytes += hidden_[k].num_bytes() + sizeof(S) * size_t(norm_parameters_[k].size());
+        std::size_t bytes = 0;
+        for (const Layer& layer : linear_) {
+            bytes += std::visit([](const auto& stored) { return stored.num_bytes(); }, layer);
+        }
+        for (const VectorX<S>& parameters : norm_parameters_) {
+            bytes += sizeof(S) * size_t(parameters.size());
         }
         return bytes;
     }
 
     Scratch make_scratch(Index max_batch) const {
         Scratch scratch{layers_.make_scratch(max_batch), {}, {}, {}};
-        for (const HiddenLayer& layer : hidden_) {
-            layer.reserve(scratch.floats, max_batch);
+        for (const Layer& layer : linear_) {
+            std::visit([&](const auto& stored) { stored.reserve(scratch_of(stored, scratch), max_batch); }, layer);
         }
-        std::visit([&](const auto& layer) { layer.reserve(scratch_of(layer, scratch), max_batch); }, last_);
         return scratch;
     }
 
@@ -92,18 +100,17 @@ public:
         layers_.infer_by(
             inputs, scratch.layers, outputs,
             [&](Index layer, ConstRef<MatrixX<S>> x, Eigen::Ref<MatrixX<S>> y) {
-                if (layer < layers_.num_hidden()) {
-                    hidden(layer).forward_into(x, scratch.floats, y, executor);
-                } else {
-                    std::visit([&](const auto& last) { last.forward_into(x, scratch_of(last, scratch), y, executor); },
-                               last_);
-                }
+                std::visit(
+                    [&](const auto& stored) { stored.forward_into(x, scratch_of(stored, scratch), y, executor); },
+                    linear(layer));
             },
             [&](Index layer) -> const VectorX<S>& { return norm_parameters_[size_t(layer)]; });
     }
 
 private:
-    static FloatColumns& scratch_of(const HiddenLayer&, Scratch& scratch) { return scratch.floats; }
+    static FloatColumns& scratch_of(const QuantizedLinear<S, BFloat16Weights>&, Scratch& scratch) {
+        return scratch.floats;
+    }
     static DigitColumns& scratch_of(const QuantizedLinear<S, Int8Weights>&, Scratch& scratch) { return scratch.digits; }
     static typename PrincipalLinear<S>::Scratch& scratch_of(const PrincipalLinear<S>&, Scratch& scratch) {
         return scratch.principal;
@@ -112,26 +119,20 @@ private:
     static std::string name(Index layer) { return "network: " + std::to_string(3 * layer) + ".weight"; }
 
     template <class E>
-    static LastLayer make_last(const Mlp<S, A>& mlp, WeightFormat format, const MatrixX<S>& typical_inputs,
-                               const E& executor) {
-        const Index last = mlp.layers().num_hidden();
-        const auto weight = mlp.weight(last);
-        const auto bias = mlp.bias(last);
-        switch (format) {
-            case WeightFormat::bfloat16:
-                return LastLayer(HiddenLayer(weight, bias, name(last), executor));
-            case WeightFormat::int8:
-                return LastLayer(QuantizedLinear<S, Int8Weights>(weight, bias, name(last), executor));
-            case WeightFormat::int4:
-                require(typical_inputs.cols() >= 2, "network: ", typical_inputs.cols(),
-                        " typical inputs, weights of the format int4 need at least 2");
-                return LastLayer(
-                    PrincipalLinear<S>(weight, bias, last_inputs(mlp, typical_inputs, executor), name(last), executor));
-            case WeightFormat::full:
-                break;
+    void add_layer(const Mlp<S, A>& mlp, Index layer, WeightFormat format, const MatrixX<S>& typical_inputs,
+                   const E& executor) {
+        const auto weight = mlp.weight(layer);
+        const auto bias = mlp.bias(layer);
+        if (format == WeightFormat::bfloat16) {
+            linear_.emplace_back(QuantizedLinear<S, BFloat16Weights>(weight, bias, name(layer), executor));
+        } else if (format == WeightFormat::int8) {
+            linear_.emplace_back(QuantizedLinear<S, Int8Weights>(weight, bias, name(layer), executor));
+        } else {
+            require(typical_inputs.cols() >= 2, "network: ", typical_inputs.cols(),
+                    " typical inputs, weights of the format int4 need at least 2");
+            linear_.emplace_back(
+                PrincipalLinear<S>(weight, bias, last_inputs(mlp, typical_inputs, executor), name(layer), executor));
         }
-        throw_invalid_input("network: weights of the format ", to_string(format),
-                            ", expected one with fewer bytes than the trained ones");
     }
 
     /// The typical inputs of the last layer.
@@ -148,9 +149,8 @@ private:
     }
 
     MlpLayers<S, A> layers_;
-    std::vector<HiddenLayer> hidden_;
+    std::vector<Layer> linear_;
     std::vector<VectorX<S>> norm_parameters_;
-    LastLayer last_;
 };
 
 }  // namespace softtissue

@@ -7,7 +7,7 @@
 ///             bfloat16  2 bytes each, 8 significant bits
 ///             int8      in the last layer 1 byte each, a step size a row; other layers bfloat16
 ///             int4      in the last layer half a byte each, but one byte along the directions in which its input varies
-///                       most; other layers bfloat16
+///                       most; other layers bfloat16, those between the first and the last hidden one int8
 /// Tests       tests/unit/nn/weight_format_test.cpp
 #pragma once
 
