@@ -174,25 +174,35 @@ void network_part(benchmark::State& state) {
     }
 }
 
-void exponentials_part(benchmark::State& state) {
-    const ThreadExecutor executor(int(state.range(0)));
+Matrix9X<float> random_logarithms() {
     RandomGenerator random(1);
-    const Matrix9X<float> Q = Matrix9X<float>::NullaryExpr(9, scene().body.mesh.num_cells(),
-                                                           [&random] { return float(random.uniform(-0.1, 0.1)); });
+    return Matrix9X<float>::NullaryExpr(9, scene().body.mesh.num_cells(),
+                                        [&random] { return float(random.uniform(-0.1, 0.1)); });
+}
+
+void targets_in_one_pass(benchmark::State& state) {
+    Scene& s = scene();
+    const ThreadExecutor executor(int(state.range(0)));
+    const GradientSkinning<Prism6, float> skinning(s.poisson, s.body.mesh, s.body.weights);
+    const Matrix9X<float> Q = random_logarithms();
     Matrix9X<float> F = Q;
+    Matrix3X<float> targets;
     for (auto _ : state) {
-        matrix_exponentials_into<float>(Q, F, executor);
+        rotated_exponentials_into<float, float>(Q, skinning.blended(), bone_quaternions<float>(s.transforms[0]), F,
+                                                targets, executor);
         benchmark::ClobberMemory();
     }
 }
 
-void rotations_part(benchmark::State& state) {
+void targets_in_three_passes(benchmark::State& state) {
     Scene& s = scene();
     const ThreadExecutor executor(int(state.range(0)));
     GradientSkinning<Prism6, float> skinning(s.poisson, s.body.mesh, s.body.weights);
-    const MatrixX<float> F = MatrixX<float>::Constant(9, s.body.mesh.num_cells(), 0.5F);
+    const Matrix9X<float> Q = random_logarithms();
+    MatrixX<float> F = Q;
     Matrix3X<float> targets;
     for (auto _ : state) {
+        matrix_exponentials_into<float>(Q, F, executor);
         target_gradients_into<float, float>(F, skinning.rotations(bone_quaternions<float>(s.transforms[0]), executor),
                                             targets, executor);
         benchmark::ClobberMemory();
@@ -242,13 +252,16 @@ bool add(const std::string& name, void (*function)(benchmark::State&)) {
     return true;
 }
 
-const std::string whole = "16 frame of neural animation at the paper's size/", part = "16 parts of a frame/";
+const std::string whole = "16 frame of neural animation at the paper's size/", part = "16 parts of a frame/",
+                  targets = "16 target gradients of a frame/";
 [[maybe_unused]] const bool is_added =
     add(whole + "baseline full weights", frame<WeightFormat::full>) &&
     add(whole + "bfloat16", frame<WeightFormat::bfloat16>) && add(whole + "int8", frame<WeightFormat::int8>) &&
     add(whole + "int4", frame<WeightFormat::int4>) && add(part + "network, int8", network_part<WeightFormat::int8>) &&
-    add(part + "network, int4", network_part<WeightFormat::int4>) && add(part + "exponentials", exponentials_part) &&
-    add(part + "rotations and targets", rotations_part) && add(part + "skinning", skinning_part) &&
-    add(part + "right-hand side and solves", reconstruction_part) && add(part + "embedding", embedding_part);
+    add(part + "network, int4", network_part<WeightFormat::int4>) &&
+    add(targets + "in one pass", targets_in_one_pass) &&
+    add(targets + "baseline exponentials, rotations and products one after the other", targets_in_three_passes) &&
+    add(part + "skinning", skinning_part) && add(part + "right-hand side and solves", reconstruction_part) &&
+    add(part + "embedding", embedding_part);
 
 }  // namespace

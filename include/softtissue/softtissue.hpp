@@ -149,6 +149,7 @@
 #include <softtissue/ndg/residual_gradients.hpp>
 #include <softtissue/ndg/residual_logarithms.hpp>
 #include <softtissue/ndg/rest_offsets.hpp>
+#include <softtissue/ndg/rotated_exponentials.hpp>
 #include <softtissue/ndg/sample_generator.hpp>
 #include <softtissue/ndg/shape_space.hpp>
 #include <softtissue/ndg/shaped_body.hpp>

@@ -2,7 +2,8 @@
 /// @file
 /// The exponentials of many 3x3 matrices, and their derivatives.
 ///
-/// What        matrix_exponential() and matrix_exponential_pullback() of every column
+/// What        matrix_exponential() and matrix_exponential_pullback() of every column; for_each_exponential_block() for who has
+///             more to do with them than to store them
 /// Shapes      9 x n, a matrix a column: row after row or column after column, which commutes with both functions.
 ///             float and double, to be named: matrix_exponentials_into<float>(Q, X)
 /// Valid       as matrix_exponential(); accuracy the same. `out` may be one of the arguments.
@@ -65,16 +66,27 @@ void exponential_lanes(const Matrix3Lanes<S>& Q, Matrix3Lanes<S>& result, const 
 
 }  // namespace detail
 
-/// exp of every column of Q.
-template <RealScalar S, Executor E = SequentialExecutor>
-void matrix_exponentials_into(ConstRef<Matrix9X<S>> Q, Eigen::Ref<Matrix9X<S>> out, const E& executor = {}) {
-    require(out.cols() == Q.cols(), "matrix exponentials: ", out.cols(), " results, expected ", Q.cols());
+/// consume(first, count, lanes) with the exponentials of `count` columns from `first` on, as long as they lie in lanes.
+template <RealScalar S, class Consume, Executor E = SequentialExecutor>
+void for_each_exponential_block(ConstRef<Matrix9X<S>> Q, const Consume& consume, const E& executor = {}) {
     for_each_lane_block(executor, Q.cols(), [&](Index first, Index count) {
         Matrix3Lanes<S> lanes, result;
         lanes.load(Q.col(first).data(), Q.outerStride(), count);
         detail::exponential_lanes(lanes, result);
-        result.store(out.col(first).data(), out.outerStride(), count);
+        consume(first, count, result);
     });
+}
+
+/// exp of every column of Q.
+template <RealScalar S, Executor E = SequentialExecutor>
+void matrix_exponentials_into(ConstRef<Matrix9X<S>> Q, Eigen::Ref<Matrix9X<S>> out, const E& executor = {}) {
+    require(out.cols() == Q.cols(), "matrix exponentials: ", out.cols(), " results, expected ", Q.cols());
+    for_each_exponential_block<S>(
+        Q,
+        [&](Index first, Index count, const Matrix3Lanes<S>& exponentials) {
+            exponentials.store(out.col(first).data(), out.outerStride(), count);
+        },
+        executor);
 }
 
 /// The gradient by Q of the sum over all columns of <G, exp Q>.

@@ -9,23 +9,28 @@
 ///             and squeezed by more than about 1/epsilon at once: smallest_determinant() tells.
 /// Refuses     a network whose outputs are not nine a cell, inputs of another size (InvalidInput)
 /// Source      Nolte et al. 2026, eq. (14) to (16)
-/// Departs     none; the rotation R_p is the caller's (see residual_gradients.hpp)
+/// Departs     none; the rotation R_p is the caller's (see residual_gradients.hpp), or applied in the same pass over the cells
 /// Cost        bytes of the weights, and one exponential a cell. Nothing is allocated after construction.
 /// Tests       tests/unit/ndg/gradient_network_test.cpp
 #pragma once
 
+#include <softtissue/core/config.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/matrix_exponentials.hpp>
+#include <softtissue/linalg/quaternion.hpp>
+#include <softtissue/ndg/rotated_exponentials.hpp>
 #include <softtissue/nn/mlp.hpp>
 #include <softtissue/nn/network_inference.hpp>
 #include <softtissue/nn/quantized_mlp.hpp>
+#include <softtissue/skinning/blended_rotation.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace softtissue {
 
@@ -48,9 +53,7 @@ public:
     /// F_p^res of one input, valid until the next call.
     template <Executor E = SequentialExecutor>
     const MatrixX<S>& predict(const VectorX<S>& input, const E& executor = {}) {
-        require(input.size() == network_.sizes().inputs, "gradient network: ", input.size(), " inputs, expected ",
-                network_.sizes().inputs);
-        network_.infer_into(input, outputs_.reshaped(outputs_.size(), 1), executor);
+        infer(input, executor);
         if (exponential_) {
             matrix_exponentials_into<S>(outputs_, residuals_, executor);
         } else {
@@ -60,6 +63,15 @@ public:
             }
         }
         return residuals_;
+    }
+
+    /// The same of a network with the exponential, and T_p = R_p F_p^res with the blended rotations of the bones.
+    template <RealScalar T, Executor E = SequentialExecutor>
+    void predict_rotated_into(const VectorX<S>& input, const BlendedRotations<T>& blended,
+                              std::span<const Quaternion<T>> bones, Matrix3X<T>& targets, const E& executor = {}) {
+        SOFTTISSUE_ASSERT(exponential_);
+        infer(input, executor);
+        rotated_exponentials_into<S, T>(outputs_, blended, bones, residuals_, targets, executor);
     }
 
     const MatrixX<S>& residuals() const { return residuals_; }
@@ -75,6 +87,13 @@ public:
     }
 
 private:
+    template <class E>
+    void infer(const VectorX<S>& input, const E& executor) {
+        require(input.size() == network_.sizes().inputs, "gradient network: ", input.size(), " inputs, expected ",
+                network_.sizes().inputs);
+        network_.infer_into(input, outputs_.reshaped(outputs_.size(), 1), executor);
+    }
+
     NetworkInference<S> network_;
     bool exponential_;
     MatrixX<S> outputs_, residuals_;

@@ -92,8 +92,13 @@ public:
                                        vertices_->predict(input_, *executor_), x, *executor_);
             return;
         }
-        const MatrixX<N>& residuals = gradients_->predict(input_, *executor_);
-        target_gradients_into<N, S>(residuals, rotations(joint_transforms), targets_, *executor_);
+        if (model_->options.rotation && model_->options.exponential) {
+            gradients_->template predict_rotated_into<S>(input_, skinning_->blended(),
+                                                         bone_quaternions<S>(joint_transforms), targets_, *executor_);
+        } else {
+            const MatrixX<N>& residuals = gradients_->predict(input_, *executor_);
+            target_gradients_into<N, S>(residuals, rotations(joint_transforms), targets_, *executor_);
+        }
         poisson_->solve_into(targets_, x, *executor_);
     }
 

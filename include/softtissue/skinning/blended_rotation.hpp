@@ -71,6 +71,7 @@ public:
     }
 
     Index num_rows() const { return Index(offsets_.size()) - 1; }
+    Index num_joints() const { return num_joints_; }
 
     /// The blended bones, largest weight first; equal weights by joint.
     std::span<const JointWeight<S>> row(Index r) const {

@@ -37,6 +37,8 @@ public:
                 " cells, expected ", poisson.num_cells());
     }
 
+    const BlendedRotations<Scalar>& blended() const { return blended_; }
+
     /// R_p of every cell, valid until the next call.
     template <Executor E = SequentialExecutor>
     const std::vector<Matrix3<Scalar>>& rotations(std::span<const Quaternion<Scalar>> bones, const E& executor = {}) {
