@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    static constexpr Index words_ahead = 1024;  ///< a page of memory
+    static constexpr Index words_ahead = 2048;  ///< two pages of memory
 
     /// Of one register: a strip of a tile.
     static constexpr Index lanes = std::min<Index>(WordPack::lanes, tile_rows);
@@ -187,7 +187,7 @@ private:
     }
 
     Index rows_, inputs_, blocks_ = 0;
-    VectorX<std::uint32_t> words_;  ///< and a page that is asked for but not used
+    VectorX<std::uint32_t> words_;  ///< and two pages that are asked for but not used
     VectorX<float> steps_;
 };
 
