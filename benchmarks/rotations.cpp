@@ -76,7 +76,7 @@ void cold(benchmark::State& state) {
 template <class S>
 void warm(benchmark::State& state) {
     Matrices<S> matrices(state);
-    Quaternions<S> q = Quaternions<S>::Constant(4, matrices.count, S(0.5));
+    Quaternions<S> q = Quaternions<S>::Constant(matrices.count, 4, S(0.5));
     fit_rotations_into(matrices.turned, q, matrices.R);
     for (auto _ : state) {
         fit_rotations_into(matrices.F, q, matrices.R);

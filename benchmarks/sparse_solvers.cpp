@@ -3,6 +3,7 @@
 // sides, a frame of it, and a Newton system in 3x3 blocks, each beside Eigen's and, where it is there, CHOLMOD's. CHOLMOD is at
 // its best with OMP_THREAD_LIMIT=1 and a BLAS that knows the processor (OpenBLAS: OPENBLAS_CORETYPE).
 
+#include "layered_limb.hpp"
 #include "machine_limits.hpp"
 
 #include <softtissue/core/random.hpp>
@@ -10,7 +11,6 @@
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
-#include <softtissue/mesh/prism_layers.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/cholesky_factor.hpp>
@@ -24,55 +24,14 @@
 #include <Eigen/CholmodSupport>
 #endif
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 namespace {
 
 using namespace softtissue;
+using namespace benchmarks;
 using SparseMatrix = Eigen::SparseMatrix<double>;
-
-/// Triangles of a tube, `around` x `along` columns.
-Triangles tube_triangles(Index around, Index along) {
-    Triangles triangles(3, 2 * around * (along - 1));
-    for (Index j = 0, t = 0; j + 1 < along; ++j) {
-        for (Index i = 0; i < around; ++i, t += 2) {
-            const auto column = [&](Index x, Index y) { return std::int32_t(y * around + x % around); };
-            triangles.col(t) << column(i, j), column(i + 1, j), column(i, j + 1);
-            triangles.col(t + 1) << column(i + 1, j), column(i + 1, j + 1), column(i, j + 1);
-        }
-    }
-    return triangles;
-}
-
-/// Three levels of vertices around a bone; the innermost is prescribed.
-struct Limb {
-    PrismLayers layers;
-    CellMesh<Prism6, double> mesh;
-    std::vector<std::int32_t> bone;
-
-    Limb(Index around, Index along) : layers{around * along, 2} {
-        mesh.cells = layers.prisms(tube_triangles(around, along));
-        mesh.rest_positions.resize(3, layers.num_vertices());
-        for (Index c = 0; c < layers.num_columns; ++c) {
-            const double angle = 2 * std::numbers::pi * double(c % around) / double(around);
-            for (Index level = 0; level < 3; ++level) {
-                const double radius = 0.03 + 0.01 * double(level);
-                mesh.rest_positions.col(layers.vertex(c, level)) << radius * std::cos(angle), radius * std::sin(angle),
-                    2 * std::numbers::pi * 0.04 / double(around) * double(c / around);
-            }
-            bone.push_back(std::int32_t(layers.vertex(c, 0)));
-        }
-    }
-};
-
-/// The paper's size: 26,752 free vertices.
-const Limb& limb() {
-    static const Limb result(64, 209);
-    return result;
-}
 
 /// 80,256 unknowns: springs of random 3x3 stiffness between all vertices that share a cell.
 const SparseMatrix& flesh_matrix() {
@@ -128,56 +87,32 @@ void analyze_flesh(benchmark::State& state) {
     }
 }
 
-const SparseMatrix& poisson_matrix() {
-    static const SparseMatrix matrix = [] {
-        const CellMesh<Prism6, double>& mesh = limb().mesh;
-        const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
-        const auto rest = RestOperators<Prism6, double>::at(mesh, mesh.rest_positions);
-        std::vector<Eigen::Triplet<double>> entries;
-        for (Index c = 0; c < mesh.num_cells(); ++c) {
-            const Eigen::Matrix<double, 3, 6> g = rest.cell_gradients(c);
-            const Eigen::Matrix<double, 6, 6> K = rest.volumes(c) * g.transpose() * g;
-            for (int a = 0; a < 6; ++a) {
-                const std::int32_t row = prescribed.free_index(mesh.cells(a, c));
-                for (int b = 0; b < 6 && row != PrescribedVertices::prescribed; ++b) {
-                    const std::int32_t column = prescribed.free_index(mesh.cells(b, c));
-                    if (column != PrescribedVertices::prescribed) {
-                        entries.emplace_back(row, column, K(a, b));
-                    }
-                }
-            }
-        }
-        SparseMatrix A(prescribed.num_free(), prescribed.num_free());
-        A.setFromTriplets(entries.begin(), entries.end());
-        return A;
-    }();
-    return matrix;
-}
-
 template <class Scalar>
 void solve_poisson(benchmark::State& state) {
-    const CholeskyFactor<Scalar> factor(poisson_matrix(), "benchmark");
+    const ThreadExecutor executor(int(state.range(0)));
+    const CholeskyFactor<Scalar> factor(limb_poisson().matrix, "benchmark");
     typename CholeskyFactor<Scalar>::RightHandSides y(4, factor.num_places());
     const typename CholeskyFactor<Scalar>::RightHandSides b = CholeskyFactor<Scalar>::RightHandSides::Ones(4, y.cols());
     for (auto _ : state) {
         y = b;
-        factor.solve_in_place(y);
+        factor.solve_in_place(y, executor);
         benchmark::DoNotOptimize(y.data());
     }
-    const double entries = double(factor.num_entries()), bytes = entries * (double(sizeof(Scalar)) + 1.0);
-    benchmarks::count_work<Scalar>(state, {.unit = "unknowns",
-                                           .items = double(factor.num_places()),
-                                           .flops = 2 * 2 * 3 * entries,
-                                           .bytes_read = 2 * bytes,
-                                           .working_set = bytes});
+    const double bytes = double(factor.num_bytes());
+    count_work<Scalar>(state, {.unit = "unknowns",
+                               .items = double(factor.size()),
+                               .flops = 16.0 * double(factor.num_entries()),
+                               .bytes_read = 2 * bytes,
+                               .working_set = bytes + double(sizeof(Scalar)) * double(y.size()),
+                               .threads = int(state.range(0))});
 }
 
 template <class Cholesky>
 void solve_poisson_with(benchmark::State& state) {
     Cholesky cholesky;
-    cholesky.analyzePattern(poisson_matrix());
-    cholesky.factorize(poisson_matrix());
-    const MatrixX<double> b = MatrixX<double>::Ones(poisson_matrix().rows(), 3);
+    cholesky.analyzePattern(limb_poisson().matrix);
+    cholesky.factorize(limb_poisson().matrix);
+    const MatrixX<double> b = MatrixX<double>::Ones(limb_poisson().matrix.rows(), 3);
     MatrixX<double> x(b.rows(), 3);
     for (auto _ : state) {
         x = cholesky.solve(b);
@@ -189,9 +124,7 @@ void solve_poisson_with(benchmark::State& state) {
 template <class Scalar>
 void poisson_frame(benchmark::State& state) {
     const ThreadExecutor executor(int(state.range(0)));
-    CellMesh<Prism6, Scalar> mesh;
-    mesh.cells = limb().mesh.cells;
-    mesh.rest_positions = limb().mesh.rest_positions.template cast<Scalar>();
+    const CellMesh<Prism6, Scalar> mesh = limb().mesh_of<Scalar>();
     PoissonReconstruction<Prism6, Scalar> poisson(mesh, PrescribedVertices(mesh.num_vertices(), limb().bone));
     Matrix3X<Scalar> targets, x = mesh.rest_positions;
     poisson.gradients_into(x, targets);
@@ -199,30 +132,22 @@ void poisson_frame(benchmark::State& state) {
         poisson.solve_into(targets, x, executor);
         benchmark::DoNotOptimize(x.data());
     }
+    const double arrays = double(sizeof(Scalar)) * double(targets.size() + x.size());
+    count_work<Scalar>(state, {.unit = "cells",
+                               .items = double(mesh.num_cells()),
+                               .bytes_read = double(poisson.bytes_per_solve()) + arrays,
+                               .bytes_written = double(sizeof(Scalar)) * double(x.size()),
+                               .threads = int(state.range(0))});
 }
 
 /// The same by sparse matrices of Eigen: a product with G^T W and a solve.
 void poisson_frame_of_eigen(benchmark::State& state) {
-    const CellMesh<Prism6, double>& mesh = limb().mesh;
-    const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
-    const auto rest = RestOperators<Prism6, double>::at(mesh, mesh.rest_positions);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (Index c = 0; c < mesh.num_cells(); ++c) {
-        const Eigen::Matrix<double, 3, 6> g = rest.volumes(c) * rest.cell_gradients(c);
-        for (int a = 0; a < 6; ++a) {
-            const std::int32_t row = prescribed.free_index(mesh.cells(a, c));
-            for (int d = 0; d < 3 && row != PrescribedVertices::prescribed; ++d) {
-                entries.emplace_back(row, std::int32_t(3 * c + d), g(d, a));
-            }
-        }
-    }
-    Eigen::SparseMatrix<double, Eigen::RowMajor> gradient_transpose(prescribed.num_free(), 3 * mesh.num_cells());
-    gradient_transpose.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLLT<SparseMatrix> cholesky(poisson_matrix());
-    const MatrixX<double> targets = MatrixX<double>::Ones(3 * mesh.num_cells(), 3);
-    MatrixX<double> b(prescribed.num_free(), 3), x(prescribed.num_free(), 3);
+    const LimbPoisson& poisson = limb_poisson();
+    const Eigen::SimplicialLLT<SparseMatrix> cholesky(poisson.matrix);
+    const MatrixX<double> targets = MatrixX<double>::Ones(poisson.gradient_transpose.cols(), 3);
+    MatrixX<double> b(poisson.matrix.rows(), 3), x(poisson.matrix.rows(), 3);
     for (auto _ : state) {
-        b.noalias() = gradient_transpose * targets;
+        b.noalias() = poisson.gradient_transpose * targets;
         x = cholesky.solve(b);
         benchmark::DoNotOptimize(x.data());
     }
@@ -241,8 +166,18 @@ void by_the_clock(benchmark::internal::Benchmark* one) {
     one->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
-BENCHMARK(solve_poisson<float>)->Name(SOFTTISSUE_POISSON_SOLVE "float")->Apply(by_the_clock);
-BENCHMARK(solve_poisson<double>)->Name(SOFTTISSUE_POISSON_SOLVE "double")->Apply(by_the_clock);
+BENCHMARK(solve_poisson<float>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "float")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Apply(by_the_clock);
+BENCHMARK(solve_poisson<double>)
+    ->Name(SOFTTISSUE_POISSON_SOLVE "double")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->Apply(by_the_clock);
 BENCHMARK(solve_poisson_with<Eigen::SimplicialLLT<SparseMatrix>>)
     ->Name(SOFTTISSUE_POISSON_SOLVE "baseline Eigen SimplicialLLT AMD")
     ->Apply(by_the_clock);

@@ -42,6 +42,7 @@
 #include <softtissue/core/float16.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
+#include <softtissue/core/pack_gather.hpp>
 #include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/random.hpp>
@@ -60,6 +61,7 @@
 #include <softtissue/energy/hinge_bending.hpp>
 #include <softtissue/energy/hinge_invariants.hpp>
 #include <softtissue/energy/inertia.hpp>
+#include <softtissue/energy/node_packs.hpp>
 #include <softtissue/energy/placed_stencils.hpp>
 #include <softtissue/energy/placement.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
@@ -67,6 +69,7 @@
 #include <softtissue/energy/rest_packs.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/energy/strain_frame.hpp>
+#include <softtissue/energy/target_forces.hpp>
 #include <softtissue/linalg/branchless_exp.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/completed_basis.hpp>
@@ -78,6 +81,7 @@
 #include <softtissue/linalg/matrix_exponential.hpp>
 #include <softtissue/linalg/matrix_exponentials.hpp>
 #include <softtissue/linalg/matrix_logarithm.hpp>
+#include <softtissue/linalg/matrix_packs.hpp>
 #include <softtissue/linalg/nine_number_lanes.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/principal_components.hpp>
@@ -220,7 +224,9 @@
 #include <softtissue/sparse/cholesky_panel.hpp>
 #include <softtissue/sparse/concepts.hpp>
 #include <softtissue/sparse/default_cholesky.hpp>
+#include <softtissue/sparse/factor_strips.hpp>
 #include <softtissue/sparse/minimum_degree_order.hpp>
+#include <softtissue/sparse/subtree_parts.hpp>
 #include <softtissue/sparse/supernodal_analysis.hpp>
 #include <softtissue/sparse/supernodal_cholesky.hpp>
 #include <softtissue/sparse/supernodes.hpp>

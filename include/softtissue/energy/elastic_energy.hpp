@@ -18,6 +18,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/element/concepts.hpp>
 #include <softtissue/energy/concepts.hpp>
+#include <softtissue/energy/node_packs.hpp>
 #include <softtissue/energy/rest_operators.hpp>
 #include <softtissue/energy/rest_packs.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
@@ -46,6 +47,7 @@ public:
     ElasticEnergy(const Mesh& mesh, Field field)
         : field_(std::move(field)),
           assembly_(validated(mesh).cells, mesh.num_vertices()),
+          nodes_(mesh.cells),
           rest_(RestOperators<ElementType, Scalar>::at(mesh, mesh.rest_positions)) {
         require_covers(field_, mesh.num_cells());
     }
@@ -147,7 +149,7 @@ private:
     }
 
     Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
-        return deformation_gradient<Lanes>(rest_.gather(d, cells(), pack), rest_.packed_gradients(pack),
+        return deformation_gradient<Lanes>(nodes_.gather(d, pack), rest_.packed_gradients(pack),
                                            rest_.packed_reference_gradient(pack));
     }
 
@@ -193,6 +195,7 @@ private:
 
     Field field_;
     Assembly assembly_;
+    NodePacks<num_nodes, Rest::width> nodes_;
     Rest rest_;
 };
 

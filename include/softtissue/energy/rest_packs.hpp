@@ -17,9 +17,7 @@
 #include <softtissue/energy/rest_operators.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdint>
 
 namespace softtissue {
 
@@ -100,26 +98,6 @@ public:
             for (int k = 0; k < 9; ++k) {
                 result.data()[k] = Lanes::load(&references_(k * width, pack));
             }
-        }
-        return result;
-    }
-
-    /// The columns of x (3 x vertices) at the nodes of a pack's cells.
-    NodePositions<ElementType, Lanes> gather(const Matrix3X<Scalar>& x, const Connectivity<num_nodes>& cells,
-                                             Index pack) const {
-        std::array<Scalar, std::size_t(3 * num_nodes * width)> numbers;
-        for (int i = 0; i < width; ++i) {
-            const std::int32_t* const nodes = cells.data() + num_nodes * cell(pack, i);
-            for (int a = 0; a < num_nodes; ++a) {
-                const Scalar* const column = x.data() + 3 * Index(nodes[a]);
-                for (int k = 0; k < 3; ++k) {
-                    numbers[std::size_t((3 * a + k) * width + i)] = column[k];
-                }
-            }
-        }
-        NodePositions<ElementType, Lanes> result;
-        for (int k = 0; k < 3 * num_nodes; ++k) {
-            result.data()[k] = Lanes::load(numbers.data() + k * width);
         }
         return result;
     }

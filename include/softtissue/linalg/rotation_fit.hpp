@@ -5,7 +5,7 @@
 /// What        the local step of projective methods: R_c = argmin |F_c - R|, det R_c = +1, for a whole mesh; from a start of its
 ///             own, or from the quaternions of a former fit, which is faster the less the matrices have turned
 /// Shapes      gradients, rotations 3 x 3n: matrix c in the columns 3c to 3c + 2; they may be the same array.
-///             quaternions 4 x n (w, x, y, z)
+///             quaternions n x 4 (w, x, y, z)
 /// Valid       every finite F; see linalg/polar.hpp for where R is not unique
 /// Packs       as many matrices at a time as a register has lanes; none depends on its neighbours
 /// Source      Bouaziz et al. 2014; Komaritzan & Botsch 2018
@@ -19,7 +19,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
-#include <softtissue/linalg/nine_number_lanes.hpp>
+#include <softtissue/linalg/matrix_packs.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/linalg/rotation_newton.hpp>
@@ -30,49 +30,38 @@
 
 namespace softtissue {
 
-/// A unit quaternion per matrix, 4 x n.
+/// A unit quaternion per matrix, n x 4: the w of all matrices together, then the x, ...
 template <class Scalar>
-using Quaternions = Eigen::Matrix<Scalar, 4, Eigen::Dynamic>;
+using Quaternions = Eigen::Matrix<Scalar, Eigen::Dynamic, 4>;
 
-namespace detail {
-
-/// Matrices `first`, `first + 1`, ... in the lanes; those beyond the last repeat it.
+/// Rows `first` to `first + N - 1` in the lanes; those beyond the last row repeat it.
 template <int N, RealScalar S>
-Matrix3<Pack<S, N>> load_matrices(const Matrix3X<S>& matrices, Index first) {
-    S lanes[9][std::size_t(N)];
-    const Index count = std::min(Index(N), matrices.cols() / 3 - first);
-    const S* const columns = matrices.data() + 9 * first;
-    if (count == N) {
-        columns_to_lanes(columns, lanes);
-    } else {
-        S padded[9 * std::size_t(N)];
-        for (Index i = 0; i < N; ++i) {
-            std::copy_n(columns + 9 * std::min(i, count - 1), 9, padded + 9 * i);
+Quaternion<Pack<S, N>> load_quaternions(const Quaternions<S>& quaternions, Index first) {
+    Quaternion<Pack<S, N>> result;
+    for (int k = 0; k < 4; ++k) {
+        const S* const numbers = quaternions.data() + k * quaternions.rows() + first;
+        if (first + N <= quaternions.rows()) {
+            result(k) = Pack<S, N>::load(numbers);
+        } else {
+            const Index last = quaternions.rows() - 1 - first;
+            result(k) = Pack<S, N>::from_lanes([&](int i) { return numbers[std::min(Index(i), last)]; });
         }
-        columns_to_lanes(padded, lanes);
-    }
-    Matrix3<Pack<S, N>> result;
-    for (int k = 0; k < 9; ++k) {
-        result.data()[k] = Pack<S, N>::load(lanes[k]);
     }
     return result;
 }
 
-/// Writes what load_matrices() reads.
+/// Writes what load_quaternions() reads.
 template <int N, RealScalar S>
-void store_matrices(const Matrix3<Pack<S, N>>& packed, Index first, Matrix3X<S>& matrices) {
-    S lanes[9][std::size_t(N)];
-    for (int k = 0; k < 9; ++k) {
-        packed.data()[k].store(lanes[k]);
-    }
-    const Index count = std::min(Index(N), matrices.cols() / 3 - first);
-    S* const columns = matrices.data() + 9 * first;
-    if (count == N) {
-        lanes_to_columns(lanes, columns);
-    } else {
-        S padded[9 * std::size_t(N)];
-        lanes_to_columns(lanes, padded);
-        std::copy_n(padded, 9 * count, columns);
+void store_quaternions(const Quaternion<Pack<S, N>>& packed, Index first, Quaternions<S>& quaternions) {
+    for (int k = 0; k < 4; ++k) {
+        S* const numbers = quaternions.data() + k * quaternions.rows() + first;
+        if (first + N <= quaternions.rows()) {
+            packed(k).store(numbers);
+        } else {
+            for (int i = 0; first + i < quaternions.rows(); ++i) {
+                numbers[i] = packed(k)[i];
+            }
+        }
     }
 }
 
@@ -89,6 +78,8 @@ Matrix3<Lanes> fit_rotation(const Matrix3<Lanes>& F, Quaternion<Lanes>& q) {
     return rotation_matrix_from_quaternion(q);
 }
 
+namespace detail {
+
 template <RealScalar S>
 Index num_matrices(const Matrix3X<S>& gradients) {
     require(gradients.cols() % 3 == 0, "rotation fit: ", gradients.cols(), " columns, expected three per matrix");
@@ -96,6 +87,13 @@ Index num_matrices(const Matrix3X<S>& gradients) {
 }
 
 }  // namespace detail
+
+/// The rotation nearest to F, lane by lane.
+template <RealLanes Lanes>
+Matrix3<Lanes> nearest_rotation(const Matrix3<Lanes>& F) {
+    Quaternion<Lanes> q = rotation_start(F);
+    return fit_rotation(F, q);
+}
 
 /// Writes one rotation per matrix; allocates nothing. Same bits for every executor.
 template <RealScalar S, Executor E = SequentialExecutor>
@@ -105,9 +103,7 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, co
     rotations.resize(3, gradients.cols());
     executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
         for (Index first = N * begin; first < N * end; first += N) {
-            const Matrix3<Pack<S, N>> F = detail::load_matrices<N>(gradients, first);
-            Quaternion<Pack<S, N>> q = rotation_start(F);
-            detail::store_matrices<N>(detail::fit_rotation(F, q), first, rotations);
+            store_matrices<N>(nearest_rotation(load_matrices<N>(gradients, first)), first, rotations);
         }
     });
 }
@@ -118,17 +114,14 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Quaternions<S>& quaternion
                         const E& executor = {}) {
     constexpr int N = natural_lanes<S>;
     const Index count = detail::num_matrices(gradients);
-    require(quaternions.cols() == count, "rotation fit: ", quaternions.cols(), " quaternions, expected ", count);
+    require(quaternions.rows() == count, "rotation fit: ", quaternions.rows(), " quaternions, expected ", count);
     rotations.resize(3, gradients.cols());
     executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
         for (Index first = N * begin; first < N * end; first += N) {
-            const Matrix3<Pack<S, N>> F = detail::load_matrices<N>(gradients, first);
-            Quaternion<Pack<S, N>> q =
-                packed_matrix<N>([&](int i) { return Quaternion<S>(quaternions.col(std::min(first + i, count - 1))); });
-            detail::store_matrices<N>(detail::fit_rotation(F, q), first, rotations);
-            for (int i = 0; i < N && first + i < count; ++i) {
-                quaternions.col(first + i) = lane(q, i);
-            }
+            const Matrix3<Pack<S, N>> F = load_matrices<N>(gradients, first);
+            Quaternion<Pack<S, N>> q = load_quaternions<N>(quaternions, first);
+            store_matrices<N>(fit_rotation(F, q), first, rotations);
+            store_quaternions<N>(q, first, quaternions);
         }
     });
 }

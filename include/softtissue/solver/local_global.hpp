@@ -14,7 +14,10 @@
 
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
+#include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/linalg/rotation_fit.hpp>
+#include <softtissue/linalg/rotation_start.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 #include <softtissue/solver/report.hpp>
 
@@ -53,8 +56,7 @@ public:
         }
         while (report.iterations < options.max_iterations) {
             last_ = x;
-            poisson_->gradients_into(x, targets_, executor);
-            fit_rotations_into(targets_, targets_, executor);
+            fit_targets(x, report.iterations == 0, executor);
             poisson_->solve_into(targets_, x, executor);
             ++report.iterations;
             report.step = (x - last_).colwise().norm().maxCoeff();
@@ -67,7 +69,22 @@ public:
     }
 
 private:
+    /// Rotations of the first iteration start anew, the others where the last one ended: a result does not depend on former ones.
+    template <Executor E>
+    void fit_targets(const Matrix3X<Scalar>& x, bool is_first, const E& executor) {
+        constexpr int N = natural_lanes<Scalar>;
+        using Lanes = Pack<Scalar, N>;
+        quaternions_.resize(poisson_->num_cells(), 4);
+        poisson_->mapped_gradients_into(x, targets_, executor, [&](Index first, const Matrix3<Lanes>& F) {
+            Quaternion<Lanes> q = is_first ? rotation_start(F) : load_quaternions<N>(quaternions_, first);
+            const Matrix3<Lanes> R = fit_rotation(F, q);
+            store_quaternions<N>(q, first, quaternions_);
+            return R;
+        });
+    }
+
     PoissonReconstruction<ElementType, Scalar>* poisson_;
+    Quaternions<Scalar> quaternions_;
     Matrix3X<Scalar> targets_, last_;
 };
 

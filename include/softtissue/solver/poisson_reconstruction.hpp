@@ -12,21 +12,26 @@
 /// Refuses     a mesh that CellMesh::validate() refuses; prescribed vertices that leave the operator singular, such as a free
 ///             prism, whose gradient does not see its six hourglass modes (InvalidInput); arrays of another size.
 /// Source      Nolte et al. 2026, eq. (9) and (10); Botsch et al. 2006
-/// Cost        per frame: one pass over the gradient operator, two over the factor. No allocation.
+/// Cost        per frame: one pass over the gradient operator, two over the factor; both on as many threads as the executor has,
+///             the factor on two. No allocation. Same bits for every executor.
 /// Tests       tests/unit/solver/poisson_reconstruction_test.cpp
 #pragma once
 
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/energy/node_packs.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/energy/rest_operators.hpp>
-#include <softtissue/energy/stencil_assembly.hpp>
+#include <softtissue/energy/rest_packs.hpp>
+#include <softtissue/energy/target_forces.hpp>
+#include <softtissue/linalg/matrix_packs.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 #include <softtissue/sparse/cholesky_factor.hpp>
 
 #include <Eigen/SparseCore>
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -37,30 +42,42 @@ class PoissonReconstruction {
 public:
     using Scalar = S;
     using Mesh = CellMesh<ElementType, Scalar>;
+    using Rest = RestOperators<ElementType, Scalar>;
+    using Packs = RestPacks<ElementType, Scalar>;
+    using Lanes = typename Packs::Lanes;
     static constexpr int num_nodes = ElementType::num_nodes;
 
     PoissonReconstruction(const Mesh& mesh, PrescribedVertices prescribed)
-        : prescribed_(std::move(prescribed)),
-          assembly_(validated(mesh, prescribed_).cells, mesh.num_vertices()),
-          rest_(RestOperators<ElementType, Scalar>::at(mesh, mesh.rest_positions)),
-          factor_(normal_matrix(), "Poisson reconstruction (free vertices)"),
-          right_hand_side_(3, mesh.num_vertices()),
-          correction_(CholeskyFactor<Scalar>::RightHandSides::Zero(4, factor_.num_places())) {}
+        : PoissonReconstruction(validated(mesh, prescribed), std::move(prescribed),
+                                Rest::at(mesh, mesh.rest_positions)) {}
 
-    Index num_cells() const { return assembly_.num_stencils(); }
-    Index num_vertices() const { return assembly_.num_vertices(); }
+    Index num_cells() const { return cells_.num_cells(); }
+    Index num_vertices() const { return prescribed_.num_vertices(); }
     const PrescribedVertices& prescribed() const { return prescribed_; }
-    const RestOperators<ElementType, Scalar>& rest() const { return rest_; }
+    const Rest& rest() const { return rest_; }
     const CholeskyFactor<Scalar>& factor() const { return factor_; }
+
+    /// What solve_into() reads of the operators: the factor twice.
+    Index bytes_per_solve() const { return forces_.num_bytes() + 2 * factor_.num_bytes(); }
 
     /// F_c of the positions x.
     template <Executor E = SequentialExecutor>
     void gradients_into(const Matrix3X<Scalar>& x, Matrix3X<Scalar>& gradients, const E& executor = {}) const {
+        mapped_gradients_into(
+            x, gradients, executor, [](Index, const Matrix3<Lanes>& F) -> const auto& { return F; });
+    }
+
+    /// map(first, F) of the gradients F of cells `first`, `first + 1`, ... side by side, without a detour through memory; both
+    /// Matrix3<Pack>, lanes beyond the last cell repeat it.
+    template <Executor E, class Map>
+    void mapped_gradients_into(const Matrix3X<Scalar>& x, Matrix3X<Scalar>& result, const E& executor,
+                               const Map& map) const {
         require_positions(x);
-        gradients.resize(3, 3 * num_cells());
-        executor.for_each_range(num_cells(), [&](Index begin, Index end) {
-            for (Index c = begin; c < end; ++c) {
-                gradients.template middleCols<3>(3 * c) = gradient(x, c);
+        result.resize(3, 3 * num_cells());
+        executor.for_each_range(packs_.num_packs(), [&](Index begin, Index end) {
+            for (Index p = begin; p < end; ++p) {
+                const Index first = Packs::width * p;
+                store_matrices<Packs::width>(map(first, gradients(x, p)), first, result);
             }
         });
     }
@@ -71,25 +88,37 @@ public:
         require_positions(x);
         require(targets.cols() == 3 * num_cells(), "Poisson reconstruction: ", targets.cols(),
                 " columns of target gradients, expected three for each of ", num_cells(), " cells");
-        right_hand_side_.setZero();
-        assembly_.add_gradient(
-            executor,
-            [&](Index c) -> NodePositions<ElementType, Scalar> {
-                const Matrix3<Scalar> missing = targets.template middleCols<3>(3 * c) - gradient(x, c);
-                return rest_.volumes(c) * missing * rest_.gradients.template middleCols<num_nodes>(num_nodes * c);
-            },
-            right_hand_side_);
+        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
+            start_.template topRows<3>().middleCols(begin, end - begin) = x.middleCols(begin, end - begin);
+        });
         const std::vector<std::int32_t>& free = prescribed_.free_vertices();
-        for (Index k = 0; k < factor_.size(); ++k) {
-            correction_.col(factor_.place(k)).template head<3>() = right_hand_side_.col(free[size_t(k)]);
-        }
-        factor_.solve_in_place(correction_);
-        for (Index k = 0; k < factor_.size(); ++k) {
-            x.col(free[size_t(k)]) += correction_.col(factor_.place(k)).template head<3>();
-        }
+        executor.for_each_range(factor_.size(), [&](Index begin, Index end) {
+            forces_.for_each(begin, end, targets, start_, free,
+                             [&](Index v, const auto& force) { correction_.col(factor_.place(v)) = force; });
+        });
+        factor_.solve_in_place(correction_, executor);
+        executor.for_each_range(factor_.size(), [&](Index begin, Index end) {
+            for (Index v = begin; v < end; ++v) {
+                x.col(free[size_t(v)]) += correction_.col(factor_.place(v)).template head<3>();
+            }
+        });
     }
 
 private:
+    PoissonReconstruction(const Mesh& mesh, PrescribedVertices&& prescribed, const Rest& rest)
+        : PoissonReconstruction(mesh, std::move(prescribed), rest, normal_matrix(mesh, rest)) {}
+
+    PoissonReconstruction(const Mesh& mesh, PrescribedVertices&& prescribed, const Rest& rest,
+                          const Eigen::SparseMatrix<double>& K)
+        : prescribed_(std::move(prescribed)),
+          cells_(mesh.cells),
+          rest_(rest),
+          packs_(rest),
+          forces_(rest, mesh.cells, K, prescribed_),
+          factor_(free_part(K), "Poisson reconstruction (free vertices)"),
+          start_(TargetForces<Scalar>::Positions::Zero(4, mesh.num_vertices())),
+          correction_(CholeskyFactor<Scalar>::RightHandSides::Zero(4, factor_.num_places())) {}
+
     static const Mesh& validated(const Mesh& mesh, const PrescribedVertices& prescribed) {
         mesh.validate();
         require(prescribed.num_vertices() == mesh.num_vertices(), "Poisson reconstruction: prescribed vertices of ",
@@ -98,42 +127,68 @@ private:
     }
 
     void require_positions(const Matrix3X<Scalar>& x) const {
-        require(x.cols() == num_vertices(), "Poisson reconstruction: ", x.cols(), " positions, expected ", num_vertices());
+        require(x.cols() == num_vertices(), "Poisson reconstruction: ", x.cols(), " positions, expected ",
+                num_vertices());
     }
 
-    Matrix3<Scalar> gradient(const Matrix3X<Scalar>& x, Index cell) const {
-        const NodePositions<ElementType, Scalar> nodes = Mesh::gather(x, assembly_.stencils().col(cell));
-        return nodes * rest_.gradients.template middleCols<num_nodes>(num_nodes * cell).transpose();
-    }
-
-    /// G^T W G on the free vertices, in double whatever the scalar.
-    Eigen::SparseMatrix<double> normal_matrix() const {
-        using NodeMatrix = Eigen::Matrix<double, num_nodes, num_nodes>;
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(size_t(num_nodes * num_nodes * num_cells()));
-        for (Index c = 0; c < num_cells(); ++c) {
-            const Eigen::Matrix<double, 3, num_nodes> g = rest_.cell_gradients(c).template cast<double>();
-            const NodeMatrix K = double(rest_.volumes(c)) * g.transpose() * g;
-            for (int a = 0; a < num_nodes; ++a) {
-                const std::int32_t row = prescribed_.free_index(assembly_.stencils()(a, c));
-                for (int b = 0; b < num_nodes && row != PrescribedVertices::prescribed; ++b) {
-                    const std::int32_t column = prescribed_.free_index(assembly_.stencils()(b, c));
-                    if (column != PrescribedVertices::prescribed && column <= row) {
-                        entries.emplace_back(row, column, K(a, b));
-                    }
+    /// Of a pack of cells; positions relative to a node of each cell, where they are small and lose no digits.
+    Matrix3<Lanes> gradients(const Matrix3X<Scalar>& x, Index pack) const {
+        const NodePositions<ElementType, Lanes> nodes = cells_.gather(x, pack);
+        const NodePositions<ElementType, Lanes> g = packs_.packed_gradients(pack);
+        Matrix3<Lanes> F = Matrix3<Lanes>::Zero();
+        for (int a = 1; a < num_nodes; ++a) {
+            for (int j = 0; j < 3; ++j) {
+                for (int i = 0; i < 3; ++i) {
+                    F(i, j) += (nodes(i, a) - nodes(i, 0)) * g(j, a);
                 }
             }
         }
-        Eigen::SparseMatrix<double> K(prescribed_.num_free(), prescribed_.num_free());
+        return F;
+    }
+
+    /// G^T W G, in double whatever the scalar.
+    static Eigen::SparseMatrix<double> normal_matrix(const Mesh& mesh, const Rest& rest) {
+        using NodeMatrix = Eigen::Matrix<double, num_nodes, num_nodes>;
+        std::vector<Eigen::Triplet<double>> entries;
+        entries.reserve(size_t(num_nodes * num_nodes * mesh.num_cells()));
+        for (Index c = 0; c < mesh.num_cells(); ++c) {
+            const Eigen::Matrix<double, 3, num_nodes> g = rest.cell_gradients(c).template cast<double>();
+            const NodeMatrix K = double(rest.volumes(c)) * g.transpose() * g;
+            for (int a = 0; a < num_nodes; ++a) {
+                for (int b = 0; b < num_nodes; ++b) {
+                    entries.emplace_back(mesh.cells(a, c), mesh.cells(b, c), K(a, b));
+                }
+            }
+        }
+        Eigen::SparseMatrix<double> K(mesh.num_vertices(), mesh.num_vertices());
         K.setFromTriplets(entries.begin(), entries.end());
         return K;
     }
 
+    /// The lower triangle of the free rows and columns.
+    Eigen::SparseMatrix<double> free_part(const Eigen::SparseMatrix<double>& K) const {
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Index v = 0; v < prescribed_.num_free(); ++v) {
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(K, prescribed_.free_vertices()[size_t(v)]); entry;
+                 ++entry) {
+                const std::int32_t row = prescribed_.free_index(entry.row());
+                if (row >= v) {  // prescribed rows are negative
+                    entries.emplace_back(row, static_cast<std::int32_t>(v), entry.value());
+                }
+            }
+        }
+        Eigen::SparseMatrix<double> result(prescribed_.num_free(), prescribed_.num_free());
+        result.setFromTriplets(entries.begin(), entries.end());
+        return result;
+    }
+
     PrescribedVertices prescribed_;
-    StencilAssembly<num_nodes, Scalar> assembly_;
-    RestOperators<ElementType, Scalar> rest_;
+    NodePacks<num_nodes, Packs::width> cells_;
+    Rest rest_;
+    Packs packs_;
+    TargetForces<Scalar> forces_;
     CholeskyFactor<Scalar> factor_;
-    Matrix3X<Scalar> right_hand_side_;
+    typename TargetForces<Scalar>::Positions start_;
     typename CholeskyFactor<Scalar>::RightHandSides correction_;
 };
 

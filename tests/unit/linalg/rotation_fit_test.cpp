@@ -52,16 +52,16 @@ TEST_CASE_TEMPLATE("warm starts, near, far and impossible, end at the same rotat
     RandomGenerator random(6);
     const Index n = 211;  // no multiple of a pack
     Matrix3X<S> F(3, 3 * n), R, cold, threads;
-    Quaternions<S> start(4, n);
+    Quaternions<S> start(n, 4);
     for (Index c = 0; c < n; ++c) {
         const Matrix3<S> state = random_state<S>(all_state_classes[size_t(c) % all_state_classes.size()], random);
         F.template middleCols<3>(3 * c) = state;
         const Vector3<S> turn = S(c % 3 == 0 ? 2.5 : 0.05) * random_unit<Vector3<S>>(random);
-        start.col(c) =
+        start.row(c) =
             quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) * polar_rotation(state));
     }
-    start.col(17).setZero();
-    start.col(18).setConstant(std::numeric_limits<S>::quiet_NaN());
+    start.row(17).setZero();
+    start.row(18).setConstant(std::numeric_limits<S>::quiet_NaN());
     fit_rotations_into(F, cold);
     Quaternions<S> q = start, q_threads = start;
     fit_rotations_into(F, q, R);
@@ -72,7 +72,7 @@ TEST_CASE_TEMPLATE("warm starts, near, far and impossible, end at the same rotat
         const Matrix3<S> rotation = R.template middleCols<3>(3 * c);
         // A rotation is known to epsilon |F| / (s_1 + s_2), which these states keep below 100 epsilon.
         CHECK((rotation - cold.template middleCols<3>(3 * c)).norm() < S(300) * std::numeric_limits<S>::epsilon());
-        CHECK((rotation_matrix_from_quaternion<S>(q.col(c)) - rotation).norm() <
+        CHECK((rotation_matrix_from_quaternion<S>(q.row(c).transpose()) - rotation).norm() <
               S(8) * std::numeric_limits<S>::epsilon());
     }
     // a fit from its own result stands still, to rounding
@@ -82,7 +82,7 @@ TEST_CASE_TEMPLATE("warm starts, near, far and impossible, end at the same rotat
     // and the lanes do not know each other
     for (const Index c : {Index(0), Index(17), Index(100), n - 1}) {
         const Matrix3X<S> one_F = F.template middleCols<3>(3 * c);
-        Quaternions<S> one_q = start.col(c);
+        Quaternions<S> one_q = start.middleRows(c, 1);
         Matrix3X<S> one_R;
         fit_rotations_into(one_F, one_q, one_R);
         CHECK(one_R == R.template middleCols<3>(3 * c));
@@ -92,7 +92,7 @@ TEST_CASE_TEMPLATE("warm starts, near, far and impossible, end at the same rotat
 TEST_CASE("warm starts of another number are refused") {
     const Matrix3X<double> F = Matrix3X<double>::Zero(3, 6);
     Matrix3X<double> R;
-    Quaternions<double> q(4, 3);
+    Quaternions<double> q(3, 4);
     CHECK_THROWS_WITH_AS(fit_rotations_into(F, q, R), "rotation fit: 3 quaternions, expected 2", InvalidInput);
 }
 
@@ -118,11 +118,11 @@ TEST_CASE_TEMPLATE("equal, vanishing, reflected, subnormal and huge stretches: n
     }
     const Index n = Index(states.size());
     Matrix3X<S> F(3, 3 * n), R;
-    Quaternions<S> q(4, n);
+    Quaternions<S> q(n, 4);
     for (Index c = 0; c < n; ++c) {
         F.template middleCols<3>(3 * c) = states[size_t(c)];
         const Vector3<S> turn = S(0.05) * random_unit<Vector3<S>>(random);
-        q.col(c) = quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) *
+        q.row(c) = quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) *
                                                       polar_rotation(states[size_t(c)]));
     }
     const auto check = [&](Index c) {
