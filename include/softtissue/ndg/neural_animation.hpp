@@ -12,7 +12,8 @@
 ///             another body (InvalidInput)
 /// Source      Nolte et al. 2026, sec. 4.2 to 4.4, eq. (21)
 /// Weights     those of the model, or in fewer bytes: a QuantizedMlp of its network
-/// Cost        gradient models: network, exponentials, two triangular solves; vertex models: network and skinning
+/// Cost        gradient models: network, exponentials, two triangular solves, and no allocation after the first pose; vertex
+///             models: network and skinning
 /// Tests       tests/unit/ndg/neural_animation_test.cpp
 #pragma once
 
@@ -21,6 +22,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/ndg/body_identity.hpp>
 #include <softtissue/ndg/gradient_network.hpp>
 #include <softtissue/ndg/network_input.hpp>
@@ -30,6 +32,7 @@
 #include <softtissue/ndg/vertex_network.hpp>
 #include <softtissue/nn/quantized_mlp.hpp>
 #include <softtissue/skinning/affine_transform.hpp>
+#include <softtissue/skinning/blended_rotation.hpp>
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
 #include <softtissue/skinning/pose.hpp>
@@ -93,8 +96,8 @@ public:
             return;
         }
         if (model_->options.rotation && model_->options.exponential) {
-            gradients_->template predict_rotated_into<S>(input_, skinning_->blended(),
-                                                         bone_quaternions<S>(joint_transforms), targets_, *executor_);
+            bone_quaternions_into<S>(joint_transforms, bones_);
+            gradients_->template predict_rotated_into<S>(input_, skinning_->blended(), bones_, targets_, *executor_);
         } else {
             const MatrixX<N>& residuals = gradients_->predict(input_, *executor_);
             target_gradients_into<N, S>(residuals, rotations(joint_transforms), targets_, *executor_);
@@ -117,7 +120,8 @@ public:
 private:
     std::span<const Matrix3<S>> rotations(Transforms joint_transforms) {
         if (model_->options.rotation) {
-            return skinning_->rotations(bone_quaternions<S>(joint_transforms), *executor_);
+            bone_quaternions_into<S>(joint_transforms, bones_);
+            return skinning_->rotations(bones_, *executor_);
         }
         root_rotations_.assign(size_t(body_->mesh.num_cells()), joint_transforms[size_t(tree_.root())].linear);
         return root_rotations_;
@@ -133,6 +137,7 @@ private:
     std::optional<GradientSkinning<Prism6, S>> skinning_;
     VectorX<N> shape_, input_;
     MatrixX<S> prepared_joints_;
+    std::vector<Quaternion<S>> bones_;
     std::vector<Matrix3<S>> root_rotations_;
     Matrix3X<S> targets_;
 };

@@ -20,7 +20,6 @@
 #include <softtissue/skinning/pose.hpp>
 
 #include <span>
-#include <vector>
 
 namespace softtissue {
 
@@ -28,17 +27,16 @@ inline Index num_pose_features(const KinematicTree& tree) {
     return 9 * (tree.num_joints() - 1);
 }
 
-/// From local rotation matrices, one per joint; N is the network's scalar.
-template <RealScalar N, RealScalar S>
-void pose_features_into(const KinematicTree& tree, std::span<const Matrix3<S>> local_rotations,
-                        Eigen::Ref<VectorX<N>> features) {
-    require(Index(local_rotations.size()) == tree.num_joints(), "pose features: ", local_rotations.size(),
-            " joint rotations, expected ", tree.num_joints());
+namespace detail {
+
+/// rotation(j) is the local rotation of joint j.
+template <RealScalar N, class Rotation>
+void rotation_features_into(const KinematicTree& tree, const Rotation& rotation, Eigen::Ref<VectorX<N>> features) {
     require(features.size() == num_pose_features(tree), "pose features: room for ", features.size(),
             " numbers, expected ", num_pose_features(tree));
     Index next = 0;
     for (Index j = 0; j < tree.num_joints(); ++j) {
-        const Matrix3<S>& R = local_rotations[size_t(j)];
+        const auto R = rotation(j);
         require(R.allFinite(), "pose features: the rotation of joint ", j, " is not finite");
         if (j == tree.root()) {
             continue;
@@ -48,20 +46,30 @@ void pose_features_into(const KinematicTree& tree, std::span<const Matrix3<S>> l
     }
 }
 
+}  // namespace detail
+
+/// From local rotation matrices, one per joint; N is the network's scalar.
+template <RealScalar N, RealScalar S>
+void pose_features_into(const KinematicTree& tree, std::span<const Matrix3<S>> local_rotations,
+                        Eigen::Ref<VectorX<N>> features) {
+    require(Index(local_rotations.size()) == tree.num_joints(), "pose features: ", local_rotations.size(),
+            " joint rotations, expected ", tree.num_joints());
+    detail::rotation_features_into<N>(
+        tree, [&](Index j) -> Matrix3<S> { return local_rotations[size_t(j)]; }, features);
+}
+
 /// From a pose; its root and translation must be finite as well.
 template <RealScalar N, RealScalar S>
 void pose_features_into(const KinematicTree& tree, const Pose<S>& pose, Eigen::Ref<VectorX<N>> features) {
     require(pose.rotation_vectors.cols() == tree.num_joints(), "pose features: a pose of ",
             pose.rotation_vectors.cols(), " joints, expected ", tree.num_joints());
     require(pose.translation.allFinite(), "pose features: the translation is not finite");
-    std::vector<Matrix3<S>> rotations;
-    rotations.reserve(size_t(tree.num_joints()));
     for (Index j = 0; j < tree.num_joints(); ++j) {
         require(pose.rotation_vectors.col(j).allFinite(), "pose features: the rotation vector of joint ", j,
                 " is not finite");
-        rotations.push_back(local_rotation(pose, j));
     }
-    pose_features_into<N, S>(tree, std::span<const Matrix3<S>>(rotations), features);
+    detail::rotation_features_into<N>(
+        tree, [&](Index j) -> Matrix3<S> { return local_rotation(pose, j); }, features);
 }
 
 }  // namespace softtissue

@@ -31,8 +31,7 @@ inline constexpr size_t max_blended_bones = 8;
 
 /// The unit quaternion of a row that starts with its largest weight.
 template <FieldScalar S>
-Quaternion<S> blended_quaternion(std::span<const Quaternion<S>> bones,
-                                 std::span<const JointWeight<RealOf<S>>> row) {
+Quaternion<S> blended_quaternion(std::span<const Quaternion<S>> bones, std::span<const JointWeight<RealOf<S>>> row) {
     using std::sqrt;
     SOFTTISSUE_ASSERT(!row.empty());
     const Quaternion<S>& pivot = bones[size_t(row.front().joint)];
@@ -45,13 +44,18 @@ Quaternion<S> blended_quaternion(std::span<const Quaternion<S>> bones,
 
 /// Rotations of joint transforms as unit quaternions.
 template <FieldScalar S>
-std::vector<Quaternion<S>> bone_quaternions(std::span<const AffineTransform<S>> joint_transforms) {
-    std::vector<Quaternion<S>> result;
-    result.reserve(joint_transforms.size());
-    for (const AffineTransform<S>& T : joint_transforms) {
-        result.push_back(quaternion_from_rotation_matrix(T.linear));
+void bone_quaternions_into(std::span<const AffineTransform<S>> joint_transforms, std::vector<Quaternion<S>>& bones) {
+    bones.resize(joint_transforms.size());
+    for (size_t j = 0; j < bones.size(); ++j) {
+        bones[j] = quaternion_from_rotation_matrix(joint_transforms[j].linear);
     }
-    return result;
+}
+
+template <FieldScalar S>
+std::vector<Quaternion<S>> bone_quaternions(std::span<const AffineTransform<S>> joint_transforms) {
+    std::vector<Quaternion<S>> bones;
+    bone_quaternions_into(joint_transforms, bones);
+    return bones;
 }
 
 /// The rows of skinning weights, of vertices or of cells, cut to their largest and ordered for blending.
@@ -61,9 +65,8 @@ public:
     explicit BlendedRotations(const SkinningWeights<S>& weights) : num_joints_(weights.num_joints()) {
         for (Index r = 0; r < weights.num_vertices(); ++r) {
             std::vector<JointWeight<S>> row(weights.row(r).begin(), weights.row(r).end());
-            std::stable_sort(row.begin(), row.end(), [](const JointWeight<S>& a, const JointWeight<S>& b) {
-                return a.weight > b.weight;
-            });
+            std::stable_sort(row.begin(), row.end(),
+                             [](const JointWeight<S>& a, const JointWeight<S>& b) { return a.weight > b.weight; });
             row.resize(std::min(row.size(), max_blended_bones));
             entries_.insert(entries_.end(), row.begin(), row.end());
             offsets_.push_back(entries_.size());
@@ -84,8 +87,8 @@ public:
                         const Exec& executor = {}) const {
         require(Index(bones.size()) == num_joints_, "blended rotations: ", bones.size(), " bones, expected ",
                 num_joints_);
-        require(Index(rotations.size()) == num_rows(), "blended rotations: ", rotations.size(),
-                " rotations, expected ", num_rows());
+        require(Index(rotations.size()) == num_rows(), "blended rotations: ", rotations.size(), " rotations, expected ",
+                num_rows());
         executor.for_each_range(num_rows(), [&](Index begin, Index end) {
             for (Index r = begin; r < end; ++r) {
                 rotations[size_t(r)] = rotation_matrix_from_quaternion(blended_quaternion<S>(bones, row(r)));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <support/allocation_counter.hpp>
+
 #include <softtissue/ndg/neural_animation.hpp>
 
 #include <softtissue/core/thread_executor.hpp>
@@ -149,6 +151,28 @@ TEST_CASE("weights in fewer bytes change a pose a little, and threads change no 
         const double difference = (x - expected).norm() / size;
         CHECK(difference > 0.0);
         CHECK(difference < (format == WeightFormat::int4 ? 0.05 : 0.01));
+    }
+}
+
+TEST_CASE("gradient models allocate nothing after the first pose") {
+    Scene scene;
+    const auto transforms = scene.transforms(bent_pose());
+    for (const NetworkOptions& options : all_variants) {
+        if (options.kind == NetworkKind::vertex) {
+            continue;
+        }
+        const NeuralModel<float> model = random_limb_model<float>(options, 0.5);
+        const QuantizedMlp<float> small(model.mlp, WeightFormat::int8);
+        for (const QuantizedMlp<float>* const weights : {static_cast<const QuantizedMlp<float>*>(nullptr), &small}) {
+            NeuralAnimation<double, SequentialExecutor> animation(model, scene.limb.body, scene.tree, {}, scene.poisson,
+                                                                  scene.executor, weights);
+            const Pose<double> pose = bent_pose();
+            Matrix3X<double> x;
+            animation.pose_into(pose, transforms, x);
+            const AllocationCounter counter;
+            animation.pose_into(pose, transforms, x);
+            CHECK(counter.count() == 0);
+        }
     }
 }
 
