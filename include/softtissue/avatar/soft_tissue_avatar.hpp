@@ -4,9 +4,11 @@
 ///
 /// What        poses go in, positions of the tissue come out: each step is one implicit Euler minimisation in which the
 ///             prescribed vertices follow the skinned shape and the rest is elastic.
+/// Method      quasi-Newton steps in the metric of the body at rest, factored once; Newton's method with the same metric where
+///             these converge slowly, which very soft or strongly strained tissue makes them do
 /// Equation    M x'' - f = 0, C_B x = C_B p(rest, pose); f from an elastic energy measured in a strain frame
 /// Shapes      positions, displacement 3 x vertices of the mesh [m]; x = p + A d (energy/placement.hpp)
-/// Parameters  Element x MaterialField x StrainFrame x SkinningPolicy x Executor x SparseCholesky
+/// Parameters  Element x MaterialField x StrainFrame x SkinningPolicy x Executor x metric
 /// Units       density kg/m^3, time step s
 /// Refuses     a mesh or model that do not fit, cells that are not positive at rest, a density or time step that is not positive
 /// Threads     one avatar belongs to one thread at a time; it may use an executor of many
@@ -27,8 +29,10 @@
 #include <softtissue/mesh/cell_mesh.hpp>
 #include <softtissue/skinning/volumetric_smpl.hpp>
 #include <softtissue/solver/direct_solver.hpp>
-#include <softtissue/solver/frozen_factor_cg.hpp>
 #include <softtissue/solver/implicit_euler.hpp>
+#include <softtissue/solver/metric_cg.hpp>
+#include <softtissue/solver/quasi_newton.hpp>
+#include <softtissue/solver/scalar_metric.hpp>
 
 #include <cstdint>
 #include <span>
@@ -37,17 +41,18 @@ namespace softtissue {
 
 template <RealScalar S>
 struct AvatarOptions {
-    S density = S(1000);         ///< [kg/m^3]
-    S time_step = S(1) / S(120); ///< [s]
-    /// An exact Newton step below this ends a time step; it is applied, so the error is far smaller.
+    S density = S(1000);          ///< [kg/m^3]
+    S time_step = S(1) / S(120);  ///< [s]
+    /// A step below its tolerance ends a time step; it is applied, so the error is smaller. max_steps = 0: Newton's method only.
+    QuasiNewtonOptions<S> quasi_newton = {};
+    /// Where quasi-Newton steps converge slowly; the error is far smaller than this step.
     NewtonOptions<S> newton = {.max_iterations = 50, .step_tolerance = S(1e-5)};
 };
 
 template <class ElementType, MaterialField Field, class Frame = UnposedFrame,
-          SkinningPolicy Policy = LinearBlend<typename MaterialOf<Field>::Scalar>, Executor ExecutorType = SequentialExecutor,
-          class Cholesky = DefaultCholesky<typename MaterialOf<Field>::Scalar>>
-    requires StrainFrame<Frame, ElasticEnergy<ElementType, Field>> &&
-             SparseCholesky<Cholesky, typename MaterialOf<Field>::Scalar>
+          SkinningPolicy Policy = LinearBlend<typename MaterialOf<Field>::Scalar>,
+          Executor ExecutorType = SequentialExecutor, class Metric = ScalarMetric<typename MaterialOf<Field>::Scalar>>
+    requires StrainFrame<Frame, ElasticEnergy<ElementType, Field>>
 class SoftTissueAvatar {
 public:
     using Scalar = typename MaterialOf<Field>::Scalar;
@@ -65,12 +70,12 @@ public:
           prescribed_(mesh_.num_vertices(), prescribed),
           executor_(&executor),
           elastic_(mesh_, std::move(field)),
-          euler_(lumped_masses(mesh_, options.density), options.time_step, prescribed_, mesh_.rest_positions, linear_solver_,
-                 executor, elastic_) {
+          euler_(lumped_masses(mesh_, options.density), options.time_step, prescribed_, mesh_.rest_positions,
+                 linear_solver_, executor, elastic_) {
         displacement_.setZero(3, mesh_.num_vertices());
         euler_.placement().origins = mesh_.rest_positions;
-        const bool is_stable = linear_solver_.factorize(euler_.objective().hessian(displacement_, PsdFilter::none));
-        require(is_stable, "soft-tissue avatar: the stiffness at rest is not positive definite, expected a material at rest");
+        metric_.factorize(euler_.objective().hessian(displacement_, PsdFilter::none),
+                          "soft-tissue avatar, stiffness at rest");
         start(Pose<Scalar>::rest(model_.num_joints()));
     }
 
@@ -119,7 +124,9 @@ public:
         carry_into(carried_, displacement_);
         extrapolated_ = Scalar(2) * carried_ - last_carried_;
         carry_into(extrapolated_, extrapolated_);
-        SolveReport<Scalar> report = euler_.step(displacement_, options_.newton, {&extrapolated_}, observer);
+        SolveReport<Scalar> report =
+            euler_.step_by([&](auto& objective, Matrix3X<Scalar>& d) { return solve(objective, d, observer); },
+                           displacement_, {&extrapolated_});
         last_carried_.swap(carried_);
         carry_back();
         return report;
@@ -132,7 +139,7 @@ public:
         set_pose(pose);
         carry_into(carried_, displacement_);
         Objective statics(prescribed_, *executor_, elastic_);
-        DirectSolver<Scalar, Cholesky> direct;
+        DirectSolver<Scalar> direct;
         SolveReport<Scalar> report = minimise(statics, direct, displacement_, options, observer);
         carry_back();
         last_carried_ = carried_;
@@ -152,6 +159,21 @@ private:
         return mesh;
     }
 
+    template <class ObjectiveType, class Observer>
+    SolveReport<Scalar> solve(ObjectiveType& objective, Matrix3X<Scalar>& d, const Observer& observer) {
+        SolveReport<Scalar> fast;
+        if (options_.quasi_newton.max_steps > 0) {
+            fast = quasi_newton_.minimise(objective, metric_, d, options_.quasi_newton, observer);
+            if (fast.succeeded() || fast.status == SolveStatus::cancelled || fast.status == SolveStatus::not_finite) {
+                return fast;
+            }
+        }
+        SolveReport<Scalar> report = minimise(objective, linear_solver_, d, options_.newton, observer);
+        report.quasi_newton_steps += fast.quasi_newton_steps;
+        report.energy_evaluations += fast.energy_evaluations;
+        return report;
+    }
+
     void set_pose(const Pose<Scalar>& pose) {
         model_.pose_into(pose, posed_, *executor_);
         const Index n = mesh_.num_vertices();
@@ -166,7 +188,7 @@ private:
             for (Index v = 0; v < n; ++v) {
                 rotations_.template middleCols<3>(3 * v) = polar_rotation(posed_.transforms[size_t(v)].linear);
             }
-            Matrix3X<Scalar>& maps = linear_solver_.maps();
+            Matrix3X<Scalar>& maps = metric_.maps();
             maps.resize(3, 3 * prescribed_.num_free());
             for (Index i = 0; i < prescribed_.num_free(); ++i) {
                 const Index v = prescribed_.free_vertices()[size_t(i)];
@@ -203,8 +225,10 @@ private:
     PrescribedVertices prescribed_;
     const ExecutorType* executor_;
     Elastic elastic_;
-    FrozenFactorCg<Scalar, Cholesky> linear_solver_;
-    ImplicitEuler<FrozenFactorCg<Scalar, Cholesky>, ExecutorType, Elastic> euler_;
+    Metric metric_;
+    MetricCg<Metric> linear_solver_{metric_};
+    QuasiNewton<Scalar> quasi_newton_;
+    ImplicitEuler<MetricCg<Metric>, ExecutorType, Elastic> euler_;
     PosedBody<Scalar> posed_;
     Placement<Scalar> skinned_;
     Matrix3X<Scalar> rotations_;  // 3 x 3 vertices, world frames only

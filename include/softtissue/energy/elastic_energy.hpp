@@ -64,8 +64,14 @@ public:
 
     /// F of one cell.
     Matrix3<Scalar> deformation_gradient(const Matrix3X<Scalar>& d, Index cell) const {
-        return deformation_gradient<Scalar>(Mesh::gather(d, cells().col(cell)), rest_.gradients(cell),
-                                            rest_.reference_gradient(cell));
+        Matrix3<Scalar> F = rest_.reference_gradient(cell);
+        const NodePositions<ElementType, Scalar> g = rest_.gradients(cell);
+        for (int i = 0; i < num_nodes; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                F.col(j) += d.col(cells()(i, cell)) * g(j, i);
+            }
+        }
+        return F;
     }
 
     /// Cells whose deformation gradient has det F <= 0.
@@ -90,17 +96,20 @@ public:
         assembly_.template add_packed_gradient<width>(
             executor,
             [&](Index pack, Scalar* slots) {
-                const Matrix3<Lanes> P =
-                    law(pack).first_piola(packed_deformation_gradient(d, pack)) * rest_.packed_volume(pack);
-                const NodePositions<ElementType, Lanes> g = rest_.packed_gradients(pack);
-                std::array<Scalar, size_t(3 * num_nodes * width)> forces;
-                for (int i = 0; i < num_nodes; ++i) {
-                    for (int k = 0; k < 3; ++k) {
-                        const Lanes force = P(k, 0) * g(0, i) + P(k, 1) * g(1, i) + P(k, 2) * g(2, i);
-                        force.store(forces.data() + width * (3 * i + k));
-                    }
-                }
-                split_lanes<3 * num_nodes>(forces.data(), slots);
+                forces_into(pack, law(pack).first_piola(packed_deformation_gradient(d, pack)), slots);
+            },
+            gradient);
+    }
+
+    template <Executor E>
+    Scalar add_energy_and_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor) {
+        return assembly_.template add_packed_energy_and_gradient<width>(
+            executor,
+            [&](Index pack, Scalar* energies, Scalar* slots) {
+                const Matrix3<Lanes> F = packed_deformation_gradient(d, pack);
+                const auto material = law(pack);
+                Lanes(rest_.packed_volume(pack) * material.energy_density(F)).store(energies);
+                forces_into(pack, material.first_piola(F), slots);
             },
             gradient);
     }
@@ -135,32 +144,40 @@ private:
         return mesh;
     }
 
-    /// F0 + sum_i d_i g_i^T, of a cell or of a pack of cells.
-    template <class T>
-    static Matrix3<T> deformation_gradient(const NodePositions<ElementType, T>& d,
-                                           const NodePositions<ElementType, T>& g, const Matrix3<T>& F0) {
-        Matrix3<T> F = F0;
+    Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
+        const NodePositions<ElementType, Lanes> d_nodes = nodes_.gather(d, pack);
+        const auto g = rest_.packed_gradients(pack);
+        Matrix3<Lanes> F = rest_.packed_reference_gradient(pack);
         for (int i = 0; i < num_nodes; ++i) {
             for (int j = 0; j < 3; ++j) {
-                F.col(j) += d.col(i) * g(j, i);
+                F.col(j) += d_nodes.col(i) * g(j, i);
             }
         }
         return F;
     }
 
-    Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
-        return deformation_gradient<Lanes>(nodes_.gather(d, pack), rest_.packed_gradients(pack),
-                                           rest_.packed_reference_gradient(pack));
-    }
-
     /// The laws of a pack of cells.
     auto law(Index pack) const {
-        return packed_law<width>([this, pack](int i) -> decltype(auto) { return field_.at(rest_.cell(pack, i)); });
+        return packed_law_at<width>(field_, pack, [this, pack](int i) { return rest_.cell(pack, i); });
+    }
+
+    /// V P g_i of every lane.
+    void forces_into(Index pack, const Matrix3<Lanes>& P, Scalar* slots) const {
+        const auto g = rest_.packed_gradients(pack);
+        const Matrix3<Lanes> VP = P * rest_.packed_volume(pack);
+        std::array<Scalar, size_t(3 * num_nodes * width)> forces;
+        for (int i = 0; i < num_nodes; ++i) {
+            for (int k = 0; k < 3; ++k) {
+                const Lanes force = VP(k, 0) * g(0, i) + VP(k, 1) * g(1, i) + VP(k, 2) * g(2, i);
+                force.store(forces.data() + width * (3 * i + k));
+            }
+        }
+        split_lanes<3 * num_nodes>(forces.data(), slots);
     }
 
     /// blocks(a, b) = V sum_kl H_(.k)(.l) g_a[k] g_b[l] of every lane.
-    static void contract_into(const Matrix9<Lanes>& H, const NodePositions<ElementType, Lanes>& g, const Lanes& volume,
-                              Scalar* slots) {
+    template <class Gradients>
+    static void contract_into(const Matrix9<Lanes>& H, const Gradients& g, const Lanes& volume, Scalar* slots) {
         std::array<Scalar, size_t(Assembly::hessian_slot * width)> blocks;
         for (int b = 0; b < num_nodes; ++b) {
             Eigen::Matrix<Lanes, 9, 3> T;

@@ -68,6 +68,19 @@ public:
         }
     }
 
+    template <Executor E>
+    Scalar add_energy_and_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E&) const {
+        Scalar sum(0);
+        for (Index v = 0; v < d.cols(); ++v) {
+            if (masses_(v) > Scalar(0)) {
+                const Vector3<Scalar> r = offset(d, v);
+                sum += masses_(v) * r.squaredNorm();
+                gradient.col(v) += stiffness(v) * placement_->pull_back(v, r);
+            }
+        }
+        return Scalar(0.5) * sum / (time_step_ * time_step_);
+    }
+
     void add_neighbours(const PrescribedVertices&, std::vector<std::vector<std::int32_t>>&) const {}
 
     void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {

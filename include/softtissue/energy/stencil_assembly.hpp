@@ -110,30 +110,27 @@ public:
     template <int N, Executor E, class EnergiesOf>
     Scalar sum_packed_energy(const E& executor, const EnergiesOf& energies_of) {
         fill_slots<N>(executor, 0, num_stencils(), energies_of, energy_slots_.data(), 1);
-        using Lanes = Pack<Scalar, natural_lanes<Scalar>>;
-        energy_slots_.tail(energy_slots_.size() - num_stencils()).setZero();
-        Lanes sums(0);
-        for (Index s = 0; s < num_stencils(); s += num_lanes<Lanes>) {
-            sums += Lanes::load(energy_slots_.data() + s);
-        }
-        Scalar sum(0);
-        for (int i = 0; i < num_lanes<Lanes>; ++i) {
-            sum += sums[i];
-        }
-        return sum;
+        return sum_of_energy_slots();
     }
 
     /// The same with a GradientSlot for each stencil, one after the other.
     template <int N, Executor E, class GradientsOf>
     void add_packed_gradient(const E& executor, const GradientsOf& gradients_of, Matrix3X<Scalar>& gradient) {
         fill_slots<N>(executor, 0, num_stencils(), gradients_of, gradient_slots_.data(), 3 * num_nodes);
-        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
-            for (Index v = begin; v < end; ++v) {
-                for (std::int32_t k = incidence_offsets_[size_t(v)]; k < incidence_offsets_[size_t(v) + 1]; ++k) {
-                    gradient.col(v) += gradient_slots_.col(incidences_[size_t(k)]);
-                }
-            }
-        });
+        gather_gradient_slots(executor, gradient);
+    }
+
+    /// Both at once: calls `terms_of(pack, energies, gradients)`.
+    template <int N, Executor E, class TermsOf>
+    Scalar add_packed_energy_and_gradient(const E& executor, const TermsOf& terms_of, Matrix3X<Scalar>& gradient) {
+        fill_slots<N>(
+            executor, 0, num_stencils(),
+            [&](Index pack, Scalar* energies) {
+                terms_of(pack, energies, gradient_slots_.data() + 3 * num_nodes * N * pack);
+            },
+            energy_slots_.data(), 1);
+        gather_gradient_slots(executor, gradient);
+        return sum_of_energy_slots();
     }
 
     /// The same with hessian_slot numbers for each stencil, the blocks of add_hessian(), column-major.
@@ -210,6 +207,33 @@ private:
 
     /// Room for the last pack.
     static constexpr Index padded(Index num_stencils) { return (num_stencils + 63) / 64 * 64; }
+
+    Scalar sum_of_energy_slots() {
+        using Lanes = Pack<Scalar, natural_lanes<Scalar>>;
+        energy_slots_.tail(energy_slots_.size() - num_stencils()).setZero();
+        Lanes sums(0);
+        for (Index s = 0; s < num_stencils(); s += num_lanes<Lanes>) {
+            sums += Lanes::load(energy_slots_.data() + s);
+        }
+        Scalar sum(0);
+        for (int i = 0; i < num_lanes<Lanes>; ++i) {
+            sum += sums[i];
+        }
+        return sum;
+    }
+
+    template <Executor E>
+    void gather_gradient_slots(const E& executor, Matrix3X<Scalar>& gradient) const {
+        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
+            for (Index v = begin; v < end; ++v) {
+                Vector3<Scalar> sum = gradient.col(v);
+                for (std::int32_t k = incidence_offsets_[size_t(v)]; k < incidence_offsets_[size_t(v) + 1]; ++k) {
+                    sum += gradient_slots_.col(incidences_[size_t(k)]);
+                }
+                gradient.col(v) = sum;
+            }
+        });
+    }
 
     template <int N, Executor E, class Fill>
     static void fill_slots(const E& executor, Index first, Index count, const Fill& fill, Scalar* slots,

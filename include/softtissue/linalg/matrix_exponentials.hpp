@@ -19,7 +19,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
-#include <softtissue/linalg/branchless_exp.hpp>
+#include <softtissue/core/branchless_exp.hpp>
 #include <softtissue/linalg/matrix3_entries.hpp>
 #include <softtissue/linalg/matrix_exponential.hpp>
 

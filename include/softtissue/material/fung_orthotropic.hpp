@@ -64,7 +64,26 @@ struct FungOrthotropicCoefficients {
     Matrix3<Scalar> tau;  ///< symmetric, entries in (0, 1]
     Scalar eta;
     Scalar max_exponent;
+
+    /// The same in every lane, or in another precision.
+    template <FieldScalar To>
+    FungOrthotropicCoefficients<To> cast() const {
+        return {static_cast<To>(mu), static_cast<To>(lambda), tau.template cast<To>(), static_cast<To>(eta),
+                static_cast<To>(max_exponent)};
+    }
 };
+
+/// Those of coefficients(i) in lane i.
+template <int N, class CoefficientsOf>
+auto packed_fung_coefficients(const CoefficientsOf& coefficients) {
+    using Lanes = Pack<std::remove_cvref_t<decltype(coefficients(0).mu)>, N>;
+    return FungOrthotropicCoefficients<Lanes>{
+        .mu = Lanes::from_lanes([&](int i) { return coefficients(i).mu; }),
+        .lambda = Lanes::from_lanes([&](int i) { return coefficients(i).lambda; }),
+        .tau = packed_matrix<N>([&](int i) { return coefficients(i).tau; }),
+        .eta = Lanes::from_lanes([&](int i) { return coefficients(i).eta; }),
+        .max_exponent = Lanes::from_lanes([&](int i) { return coefficients(i).max_exponent; })};
+}
 
 /// The coefficients of `parameters`; refuses what the file comment lists. `where...` precedes the names in the message.
 template <FieldScalar Scalar, class... Where>
@@ -118,14 +137,8 @@ public:
     /// N laws side by side, law(i) in lane i.
     template <int N, class Law>
     static FungOrthotropic<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
-        using Lanes = Pack<Scalar, N>;
-        const FungOrthotropicCoefficients<Lanes> coefficients{
-            .mu = Lanes::from_lanes([&](int i) { return law(i).coefficients_.mu; }),
-            .lambda = Lanes::from_lanes([&](int i) { return law(i).coefficients_.lambda; }),
-            .tau = packed_matrix<N>([&](int i) { return law(i).coefficients_.tau; }),
-            .eta = Lanes::from_lanes([&](int i) { return law(i).coefficients_.eta; }),
-            .max_exponent = Lanes::from_lanes([&](int i) { return law(i).coefficients_.max_exponent; })};
-        return {coefficients, packed_matrix<N>([&](int i) { return law(i).basis_; })};
+        return {packed_fung_coefficients<N>([&](int i) -> const Coefficients& { return law(i).coefficients_; }),
+                packed_matrix<N>([&](int i) { return law(i).basis_; })};
     }
 
     const Coefficients& coefficients() const { return coefficients_; }

@@ -67,4 +67,15 @@ auto packed_law(const Law& law) {
     }
 }
 
+/// The laws of a pack of `field`'s cells, cell(i) in lane i; a field may offer them itself as packed_at(pack).
+template <int N, class Field, class CellOf>
+auto packed_law_at(const Field& field, Index pack, const CellOf& cell) {
+    if constexpr (requires { field.packed_at(pack); }) {
+        static_assert(num_lanes<typename decltype(field.packed_at(pack))::Scalar> == N);
+        return field.packed_at(pack);
+    } else {
+        return packed_law<N>([&field, cell](int i) -> decltype(auto) { return field.at(cell(i)); });
+    }
+}
+
 }  // namespace softtissue

@@ -13,7 +13,7 @@
 #pragma once
 
 #include <softtissue/core/scalar.hpp>
-#include <softtissue/linalg/branchless_exp.hpp>
+#include <softtissue/core/branchless_exp.hpp>
 #include <softtissue/nn/concepts.hpp>
 #include <softtissue/nn/normal_distribution.hpp>
 

@@ -16,8 +16,8 @@
 #pragma once
 
 #include <softtissue/core/scalar.hpp>
-#include <softtissue/linalg/branchless_exp.hpp>
-#include <softtissue/linalg/horner.hpp>
+#include <softtissue/core/branchless_exp.hpp>
+#include <softtissue/core/horner.hpp>
 
 #include <bit>
 #include <cmath>

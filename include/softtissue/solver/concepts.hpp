@@ -5,7 +5,7 @@
 /// What        solve(H, rhs, relative_tolerance, p, executor): p with |H p - rhs| <= relative_tolerance |rhs|, or the answer
 ///             that H is not positive definite (then p is unspecified, and Newton asks again with a filtered H). An iterative
 ///             solver that runs out of iterations hands back its best p, which is still a direction of descent.
-/// Tests       tests/unit/solver/direct_solver_test.cpp, tests/unit/solver/frozen_factor_cg_test.cpp
+/// Tests       tests/unit/solver/direct_solver_test.cpp, tests/unit/solver/metric_cg_test.cpp
 #pragma once
 
 #include <softtissue/core/executor.hpp>

@@ -61,14 +61,38 @@ public:
     /// The energy of the step in preparation, for preconditioners and inspection.
     auto& objective() { return objective_; }
 
-    /// Advances by one time step. `displacement` holds the prescribed columns and is overwritten by the result; the solve
-    /// starts from whichever of it and `other_starts` has the lowest energy. On failure the best accepted point is taken over.
+    /// Advances by one time step, by Newton's method. `displacement` holds the prescribed columns and is overwritten by the
+    /// result; the solve starts from whichever of it and `other_starts` has the lowest energy. On failure the best accepted point
+    /// is taken over.
     template <class Observer = NoObserver>
     SolveReport<Scalar> step(Matrix3X<Scalar>& displacement, const NewtonOptions<Scalar>& options = {},
-                             std::initializer_list<const Matrix3X<Scalar>*> other_starts = {}, const Observer& observer = {}) {
+                             std::initializer_list<const Matrix3X<Scalar>*> other_starts = {},
+                             const Observer& observer = {}) {
+        return step_by([&](auto& objective,
+                           Matrix3X<Scalar>& d) { return minimise(objective, *linear_solver_, d, options, observer); },
+                       displacement, other_starts);
+    }
+
+    /// The same by a method of the caller's: `method(objective, d)` minimises in place and returns a SolveReport.
+    template <class Method>
+    SolveReport<Scalar> step_by(const Method& method, Matrix3X<Scalar>& displacement,
+                                std::initializer_list<const Matrix3X<Scalar>*> other_starts = {}) {
         const Scalar dt = time_step();
         target_ = state_.positions + dt * state_.velocities;
         target_.colwise() += dt * dt * acceleration_;
+        choose_start(displacement, other_starts);
+        SolveReport<Scalar> report = method(objective_, displacement);
+        placement_.positions_into(displacement, next_);
+        state_.velocities = (next_ - state_.positions) / dt;
+        state_.positions.swap(next_);
+        return report;
+    }
+
+private:
+    void choose_start(Matrix3X<Scalar>& displacement, std::initializer_list<const Matrix3X<Scalar>*> other_starts) {
+        if (other_starts.size() == 0) {
+            return;
+        }
         Scalar lowest = objective_.energy(displacement);
         const Matrix3X<Scalar>* best = &displacement;
         for (const Matrix3X<Scalar>* start : other_starts) {
@@ -81,17 +105,11 @@ public:
         if (best != &displacement) {
             displacement = *best;
         }
-        SolveReport<Scalar> report = minimise(objective_, *linear_solver_, displacement, options, observer);
-        placement_.positions_into(displacement, next_);
-        state_.velocities = (next_ - state_.positions) / dt;
-        state_.positions.swap(next_);
-        return report;
     }
 
-private:
     static VectorX<Scalar> free_masses(VectorX<Scalar> masses, const PrescribedVertices& prescribed) {
-        require(masses.size() == prescribed.num_vertices(), "implicit Euler: ", masses.size(), " masses, expected one for each of ",
-                prescribed.num_vertices(), " vertices");
+        require(masses.size() == prescribed.num_vertices(), "implicit Euler: ", masses.size(),
+                " masses, expected one for each of ", prescribed.num_vertices(), " vertices");
         for (Index v = 0; v < masses.size(); ++v) {
             if (prescribed.is_prescribed(v)) {
                 masses(v) = Scalar(0);

@@ -48,6 +48,15 @@ public:
         return free_gradient_;
     }
 
+    /// Energy, and dE/dd on the free vertices into `gradient`: less work than one after the other.
+    Scalar energy_and_gradient(const Matrix3X<Scalar>& d, VectorX<Scalar>& gradient) {
+        full_gradient_.setZero(3, d.cols());
+        const Scalar energy = std::apply(
+            [&](auto&... term) { return (add_energy_and_gradient(term, d, full_gradient_, *executor_) + ...); }, terms_);
+        prescribed_.restrict_into(full_gradient_, gradient);
+        return energy;
+    }
+
     /// dE/dd on all vertices; on the prescribed ones the force that holds them. Valid until the next call.
     const Matrix3X<Scalar>& full_gradient(const Matrix3X<Scalar>& d) {
         full_gradient_.setZero(3, d.cols());

@@ -15,6 +15,7 @@ enum class SolveStatus {
     converged,            ///< a stated tolerance is met; that of the step counts only where the Hessian is positive definite
     precision_limit,      ///< no further decrease can be resolved in this precision; as good as it gets
     iteration_limit,      ///< the allowed iterations are spent
+    slow_convergence,     ///< steps without Hessians gain too little here; Newton's method is to go on
     saddle_point,         ///< the gradient vanishes but the Hessian is indefinite: not a minimum
     line_search_stalled,  ///< no acceptable step along a descent direction
     linear_solver_failed, ///< even the filtered Hessian could not be solved
@@ -28,6 +29,7 @@ constexpr const char* to_string(SolveStatus status) {
         case SolveStatus::converged: return "converged";
         case SolveStatus::precision_limit: return "precision limit reached";
         case SolveStatus::iteration_limit: return "iteration limit reached";
+        case SolveStatus::slow_convergence: return "converges slowly";
         case SolveStatus::saddle_point: return "stopped at a saddle point";
         case SolveStatus::line_search_stalled: return "line search stalled";
         case SolveStatus::linear_solver_failed: return "linear solver failed";
@@ -43,7 +45,7 @@ struct [[nodiscard]] SolveReport {
     int iterations = 0;           ///< Newton iterations: linear systems solved and steps taken
     int filtered_iterations = 0;  ///< of these, with a filtered Hessian
     int indefinite_hessians = 0;  ///< exact Hessians that were tried and not positive definite
-    int quasi_newton_steps = 0;   ///< steps between the iterations, with a Hessian of before
+    int quasi_newton_steps = 0;   ///< steps before or between the iterations, with a Hessian of before
     int energy_evaluations = 0;
     int linear_iterations = 0;    ///< conjugate-gradient iterations; 0 for direct solvers
     S energy = S(0);

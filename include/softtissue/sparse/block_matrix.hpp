@@ -64,6 +64,16 @@ public:
         }
     }
 
+    /// The block at row pattern().rows(j)[rank], column j.
+    Matrix3<Scalar> block(Index j, std::int32_t rank) const {
+        Matrix3<Scalar> result;
+        for (int c = 0; c < 3; ++c) {
+            const Scalar* const column = matrix_.valuePtr() + column_begin(j, c) + 3 * rank;
+            result.col(c) << column[0], column[1], column[2];
+        }
+        return result;
+    }
+
     /// y = (this) x. Each entry of y is one dot product with a column, so the bits do not depend on the executor.
     template <Executor E>
     void multiply_into(const VectorX<Scalar>& x, VectorX<Scalar>& y, const E& executor) const {

@@ -17,6 +17,12 @@ bool is_same(T a, T b) {
     return a == b ? std::signbit(a) == std::signbit(b) : a != a && b != b;
 }
 
+/// The same, or two neighbours among numbers.
+template <class T>
+bool is_near(T a, T b) {
+    return is_same(a, b) || std::abs(a - b) <= 2 * std::numeric_limits<T>::epsilon() * std::abs(b);
+}
+
 template <class T>
 std::vector<T> hard_numbers() {
     using Limits = std::numeric_limits<T>;
@@ -40,8 +46,9 @@ std::vector<T> hard_numbers() {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("functions give bit for bit what std gives", P, Pack<float, natural_lanes<float>>,
-                   Pack<double, natural_lanes<double>>, Pack<float, 64>, Pack<double, 3>) {
+TEST_CASE_TEMPLATE("functions give what std gives, all but the exponentials bit for bit", P,
+                   Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>, Pack<float, 64>,
+                   Pack<double, 3>) {
     using T = RealOf<P>;
     const std::vector<T> list = hard_numbers<T>();
     const size_t count = list.size();
@@ -57,7 +64,7 @@ TEST_CASE_TEMPLATE("functions give bit for bit what std gives", P, Pack<float, n
                 all_same = all_same && is_same(absolute[i], std::abs(a(i))) &&
                            is_same(signed_x[i], std::copysign(a(i), b(i))) && is_same(least[i], std::min(a(i), b(i))) &&
                            is_same(most[i], std::max(a(i), b(i))) && is_same(root[i], std::sqrt(a(i))) &&
-                           is_same(power[i], std::exp(a(i))) && is_same(power_less_1[i], std::expm1(a(i)));
+                           is_near(power[i], std::exp(a(i))) && is_near(power_less_1[i], std::expm1(a(i)));
             }
             CHECK(all_same);
         }

@@ -28,7 +28,7 @@ TEST_CASE_TEMPLATE("cells come back from their lanes, the last one repeated", Ty
     const auto lanes_hold_their_cells = [&] {
         bool all_same = true;
         for (Index pack = 0; pack < rest.num_packs(); ++pack) {
-            const auto gradients = rest.packed_gradients(pack);
+            const NodePositions<E, typename Rest::Lanes> gradients = rest.packed_gradients(pack);
             const auto references = rest.packed_reference_gradient(pack);
             for (int i = 0; i < Rest::width; ++i) {
                 const Index c = rest.cell(pack, i);

@@ -2,7 +2,8 @@
 #include <softtissue/solver/concepts.hpp>
 
 #include <softtissue/solver/direct_solver.hpp>
-#include <softtissue/solver/frozen_factor_cg.hpp>
+#include <softtissue/solver/metric_cg.hpp>
+#include <softtissue/solver/scalar_metric.hpp>
 
 #include <doctest/doctest.h>
 
@@ -14,7 +15,8 @@ namespace {
 struct DiagonalSolver {
     using Scalar = double;
     template <Executor E>
-    LinearSolveResult solve(const BlockMatrix<double>& H, const VectorX<double>& rhs, double, VectorX<double>& p, const E&) {
+    LinearSolveResult solve(const BlockMatrix<double>& H, const VectorX<double>& rhs, double, VectorX<double>& p,
+                            const E&) {
         const VectorX<double> diagonal = H.matrix().diagonal();
         p = rhs.cwiseQuotient(diagonal);
         return {.is_positive_definite = diagonal.minCoeff() > 0, .iterations = 1};
@@ -34,8 +36,8 @@ struct NoScalar {
 
 static_assert(NewtonLinearSolver<DirectSolver<double>>);
 static_assert(NewtonLinearSolver<DirectSolver<float>>);
-static_assert(NewtonLinearSolver<FrozenFactorCg<double>>);
-static_assert(NewtonLinearSolver<FrozenFactorCg<float>>);
+static_assert(NewtonLinearSolver<MetricCg<ScalarMetric<double>>>);
+static_assert(NewtonLinearSolver<MetricCg<ScalarMetric<float>>>);
 static_assert(NewtonLinearSolver<DiagonalSolver>);
 static_assert(!NewtonLinearSolver<ReturnsNothing>);
 static_assert(!NewtonLinearSolver<NoScalar>);

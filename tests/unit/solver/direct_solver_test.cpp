@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/solver/direct_solver.hpp>
 
-#include <softtissue/solver/frozen_factor_cg.hpp>
+#include <softtissue/solver/metric_cg.hpp>
+#include <softtissue/solver/scalar_metric.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include <doctest/doctest.h>
@@ -9,7 +10,7 @@
 using namespace softtissue;
 
 static_assert(FactorKeepingSolver<DirectSolver<float>>);
-static_assert(!FactorKeepingSolver<FrozenFactorCg<double>>);
+static_assert(!FactorKeepingSolver<MetricCg<ScalarMetric<double>>>);
 
 namespace {
 
@@ -72,7 +73,8 @@ TEST_CASE("a matrix of another pattern with as many blocks is analysed anew") {
     DirectSolver<double> solver;
     VectorX<double> p;
     const VectorX<double> rhs = VectorX<double>::Ones(12);
-    for (const auto& H : {chain<double>({{0, 1}, {1, 2}}, 4, 12, random), chain<double>({{0, 3}, {1, 3}}, 4, 12, random)}) {
+    for (const auto& H :
+         {chain<double>({{0, 1}, {1, 2}}, 4, 12, random), chain<double>({{0, 3}, {1, 3}}, 4, 12, random)}) {
         REQUIRE(solver.solve(H, rhs, 0, p, SequentialExecutor{}).is_positive_definite);
         CHECK((H.matrix() * p - rhs).norm() < 1e-13);
     }

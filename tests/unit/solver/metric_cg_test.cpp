@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <softtissue/solver/frozen_factor_cg.hpp>
+#include <softtissue/solver/metric_cg.hpp>
 
 #include <softtissue/core/thread_executor.hpp>
+#include <softtissue/solver/scalar_metric.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include <doctest/doctest.h>
@@ -45,8 +46,9 @@ TEST_CASE_TEMPLATE("the system is solved to the tolerance asked for", Scalar, fl
     RandomGenerator random(1);
     const BlockMatrix<Scalar> K0 = chain<Scalar>(0, 0.5, random), H = chain<Scalar>(0.6, 0.5, random);
     const VectorX<Scalar> rhs = random_vector<Scalar>(random);
-    FrozenFactorCg<Scalar> solver;
-    REQUIRE(solver.factorize(K0));
+    ScalarMetric<Scalar> metric;
+    metric.factorize(K0, "K0");
+    MetricCg<ScalarMetric<Scalar>> solver(metric);
     VectorX<Scalar> p;
     int last = 0;
     for (const Scalar tolerance : {Scalar(1e-1), Scalar(1e-3), Scalar(1e-5)}) {
@@ -61,18 +63,19 @@ TEST_CASE_TEMPLATE("the system is solved to the tolerance asked for", Scalar, fl
     CHECK(p == p_threads);
 }
 
-TEST_CASE("the factor of the matrix itself leaves one iteration") {
+TEST_CASE("the matrix itself as metric leaves one iteration") {
     RandomGenerator random(2);
     const BlockMatrix<double> H = chain<double>(0.6, 0.5, random);
-    FrozenFactorCg<double> solver;
-    REQUIRE(solver.factorize(H));
+    ScalarMetric<double> metric;
+    metric.factorize(H, "H");
+    MetricCg<ScalarMetric<double>> solver(metric);
     VectorX<double> p;
     CHECK(solver.solve(H, random_vector<double>(random), 1e-12, p, SequentialExecutor{}).iterations == 1);
     CHECK(solver.solve(H, VectorX<double>::Zero(3 * n), 1e-12, p, SequentialExecutor{}).iterations == 0);
     CHECK(p.norm() == 0.0);
 }
 
-TEST_CASE("maps carry the factor into the world") {
+TEST_CASE("maps carry the metric into the world") {
     // H = Q K0 Q^T with a rotation per vertex: preconditioned with the maps it is the identity
     RandomGenerator random(3);
     const BlockMatrix<double> K0 = chain<double>(0.3, 0.5, random);
@@ -88,12 +91,13 @@ TEST_CASE("maps carry the factor into the world") {
                   Q.middleCols<3>(3 * i) * dense.block<3, 3>(3 * i, 3 * j) * Q.middleCols<3>(3 * j).transpose());
         }
     }
-    FrozenFactorCg<double> solver;
-    REQUIRE(solver.factorize(K0));
+    ScalarMetric<double> metric;
+    metric.factorize(K0, "K0");
+    MetricCg<ScalarMetric<double>> solver(metric);
     const VectorX<double> rhs = random_vector<double>(random);
     VectorX<double> p;
     const int without = solver.solve(H, rhs, 1e-8, p, SequentialExecutor{}).iterations;
-    solver.maps() = Q;
+    metric.maps() = Q;
     const LinearSolveResult with = solver.solve(H, rhs, 1e-8, p, SequentialExecutor{});
     CHECK(with.iterations == 1);
     CHECK(without > 5);
@@ -103,9 +107,10 @@ TEST_CASE("maps carry the factor into the world") {
 TEST_CASE("negative curvature is reported") {
     RandomGenerator random(4);
     const BlockMatrix<double> K0 = chain<double>(0, 0.5, random), indefinite = chain<double>(0, -0.5, random);
-    FrozenFactorCg<double> solver;
-    CHECK_FALSE(solver.factorize(indefinite));
-    REQUIRE(solver.factorize(K0));
+    ScalarMetric<double> metric;
+    metric.factorize(K0, "K0");
+    MetricCg<ScalarMetric<double>> solver(metric);
     VectorX<double> p;
-    CHECK_FALSE(solver.solve(indefinite, random_vector<double>(random), 1e-8, p, SequentialExecutor{}).is_positive_definite);
+    CHECK_FALSE(
+        solver.solve(indefinite, random_vector<double>(random), 1e-8, p, SequentialExecutor{}).is_positive_definite);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <softtissue/linalg/horner.hpp>
+#include <softtissue/core/horner.hpp>
 
 #include <softtissue/core/dual.hpp>
 

@@ -5,7 +5,7 @@
 /// What        horner(x, c_n, ..., c_1, c_0), the highest power first
 /// Equation    (...(c_n x + c_{n-1}) x + ...) x + c_0
 /// Shapes      any scalar; coefficients are double, rounded to the scalar
-/// Tests       tests/unit/linalg/horner_test.cpp
+/// Tests       tests/unit/core/horner_test.cpp
 #pragma once
 
 #include <softtissue/core/scalar.hpp>

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <softtissue/linalg/branchless_exp.hpp>
+#include <softtissue/core/branchless_exp.hpp>
 
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/random.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 using namespace softtissue;
@@ -42,6 +44,43 @@ TEST_CASE_TEMPLATE("a correction below the last digit counts", S, float, double)
         for (const S low : {S(0.1), S(-0.03), S(20) * epsilon}) {
             const long double exact = std::exp(static_cast<long double>(x) + static_cast<long double>(low));
             CHECK(ulps(branchless_exp(x, low), exact) < 2);
+        }
+    }
+}
+
+TEST_CASE_TEMPLATE("exp(x) - 1 within 2.5 ulp, for small and for large x", S, float, double) {
+    RandomGenerator random(2);
+    double worst = 0;
+    for (int i = 0; i < 400000; ++i) {
+        const double reach = i % 2 == 0 ? 1.5 : (sizeof(S) == 4 ? 88.7 : 709.7);
+        const double small = i % 8 == 0 ? std::exp(-random.uniform(0, 60)) : 1;
+        const S x = S(small * random.uniform(-reach, reach));
+        worst = std::max(worst, ulps(branchless_expm1(x), std::expm1(static_cast<long double>(x))));
+    }
+    MESSAGE("largest error in ulp: ", worst);
+    CHECK(worst < 2.5);
+    using Limits = std::numeric_limits<S>;
+    CHECK(branchless_expm1(Limits::infinity()) == Limits::infinity());
+    CHECK(branchless_expm1(-Limits::infinity()) == S(-1));
+    CHECK(branchless_expm1(S(0)) == S(0));
+    CHECK(branchless_expm1(Limits::denorm_min()) == Limits::denorm_min());
+    CHECK(std::isnan(branchless_expm1(Limits::quiet_NaN())));
+}
+
+TEST_CASE_TEMPLATE("packs give what plain numbers give, to the last digit but one", P,
+                   Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>, Pack<float, 64>,
+                   Pack<double, 3>) {
+    using T = RealOf<P>;
+    RandomGenerator random(3);
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        const P x = P::from_lanes([&](int) { return T(random.uniform(-1, 1) * std::exp(random.uniform(-20, 7))); });
+        const P power = branchless_exp(x), power_less_1 = branchless_expm1(x);
+        for (int i = 0; i < num_lanes<P>; ++i) {
+            const T tolerance = 2 * std::numeric_limits<T>::epsilon();
+            const T expected = branchless_exp(x[i]), expected_less_1 = branchless_expm1(x[i]);
+            REQUIRE((power[i] == expected || std::abs(power[i] - expected) <= tolerance * expected));
+            REQUIRE((power_less_1[i] == expected_less_1 ||
+                     std::abs(power_less_1[i] - expected_less_1) <= tolerance * std::abs(expected_less_1)));
         }
     }
 }
