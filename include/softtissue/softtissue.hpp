@@ -44,8 +44,8 @@
 #include <softtissue/core/horner.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
-#include <softtissue/core/pack_gather.hpp>
 #include <softtissue/core/pack_array.hpp>
+#include <softtissue/core/pack_gather.hpp>
 #include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/random.hpp>

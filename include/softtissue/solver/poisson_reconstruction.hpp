@@ -134,7 +134,7 @@ private:
     /// Of a pack of cells; positions relative to a node of each cell, where they are small and lose no digits.
     Matrix3<Lanes> gradients(const Matrix3X<Scalar>& x, Index pack) const {
         const NodePositions<ElementType, Lanes> nodes = cells_.gather(x, pack);
-        const NodePositions<ElementType, Lanes> g = packs_.packed_gradients(pack);
+        const auto g = packs_.packed_gradients(pack);
         Matrix3<Lanes> F = Matrix3<Lanes>::Zero();
         for (int a = 1; a < num_nodes; ++a) {
             for (int j = 0; j < 3; ++j) {

@@ -33,8 +33,7 @@ TEST_CASE_TEMPLATE("cells come back from their lanes, the last one repeated", Ty
             for (int i = 0; i < Rest::width; ++i) {
                 const Index c = rest.cell(pack, i);
                 all_same = all_same && rest.packed_volume(pack)[i] == rest.volume(c) &&
-                           lane(gradients, i) == rest.gradients(c) &&
-                           lane(references, i) == rest.reference_gradient(c);
+                           lane(gradients, i) == rest.gradients(c) && lane(references, i) == rest.reference_gradient(c);
             }
         }
         return all_same;
