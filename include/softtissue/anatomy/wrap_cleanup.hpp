@@ -24,8 +24,6 @@
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/mesh/triangle_mesh.hpp>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -135,7 +133,7 @@ private:
         });
         for_each_column(wrap, v, [&](const Vector3<S>& way) { add_column_derivatives(way, gradient, hessian); });
         hessian.diagonal().array() += S(2) * spring.weight;
-        Vector3<S> step = filtered<S, 3>(hessian, PsdFilter::absolute).llt().solve(-gradient);
+        Vector3<S> step = solution(filtered<S, 3>(hessian, PsdFilter::absolute), -gradient);
         const S length = step.norm();
         // A hundredth of what ends the sweeps: not worth an evaluation.
         if (!(length > S(0.01) * options_.negligible)) {
@@ -153,6 +151,34 @@ private:
         }
         wrap.col(v) = before;
         return S(0);
+    }
+
+    /// Of L L^T x = b, in place of `b`; plain loops, because Eigen's cost seconds to compile. Not finite where H is not definite.
+    static Vector3<S> solution(Matrix3<S> H, Vector3<S> b) {
+        for (int k = 0; k < 3; ++k) {
+            for (int i = k; i < 3; ++i) {
+                S sum(0);
+                for (int j = 0; j < k; ++j) {
+                    sum += H(i, j) * H(k, j);
+                }
+                H(i, k) = i == k ? std::sqrt(H(k, k) - sum) : (H(i, k) - sum) / H(k, k);
+            }
+        }
+        for (int k = 0; k < 3; ++k) {
+            S sum(0);
+            for (int j = 0; j < k; ++j) {
+                sum += H(k, j) * b(j);
+            }
+            b(k) = (b(k) - sum) / H(k, k);
+        }
+        for (int k = 2; k >= 0; --k) {
+            S sum(0);
+            for (int j = k + 1; j < 3; ++j) {
+                sum += H(j, k) * b(j);
+            }
+            b(k) = (b(k) - sum) / H(k, k);
+        }
+        return b;
     }
 
     S energy(const Matrix3X<S>& wrap, std::int32_t v, const Spring& spring) const {
