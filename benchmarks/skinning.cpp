@@ -7,12 +7,14 @@
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/inverse.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/skinning/skin_points.hpp>
 #include <softtissue/skinning/volumetric_smpl.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <vector>
 
 namespace {
 
@@ -77,6 +79,7 @@ void count_vertices(benchmark::State& state, double bytes_read = 0, double bytes
                                       .bytes_written = bytes_written});
 }
 
+/// All of the SMPL function: pose blend shapes, blends, posed vertices.
 template <class Policy>
 void pose_body(benchmark::State& state) {
     using S = typename Policy::Scalar;
@@ -88,35 +91,104 @@ void pose_body(benchmark::State& state) {
         benchmark::DoNotOptimize(posed.positions.data());
         benchmark::ClobberMemory();
     }
+    // rest vertices and four weights each; transforms, offsets and positions
+    const double vertices = double(state.range(0)), number = double(sizeof(S));
+    count_vertices<S>(state, double(model.pose_blend_shapes().num_bytes()) + vertices * (3 * number + 4 * (number + 4)),
+                      vertices * 18 * number);
+}
+
+/// Points by weights and joints, no more.
+template <class Policy>
+void skin_points(benchmark::State& state) {
+    using S = typename Policy::Scalar;
+    const SmplBody<S> body = chain_body<S>(state.range(0));
+    const auto joints = joint_transforms(body.tree, VolumetricSmpl<S>(body).rest_joints(), walking_pose<S>());
+    MatrixX<S> prepared;
+    Matrix3X<S> x;
+    for (auto _ : state) {
+        skin_points_into(Policy(), joints, body.weights, body.template_vertices, prepared, x);
+        benchmark::DoNotOptimize(x.data());
+        benchmark::ClobberMemory();
+    }
+    const double vertices = double(state.range(0)), number = double(sizeof(S));
+    count_vertices<S>(state, vertices * (3 * number + 4 * (number + 4)), vertices * 3 * number);
+}
+
+/// Sums over all joints for one vertex after the other, as the definition reads.
+template <class S>
+Matrix3X<S> naive_linear_blend(const MatrixX<S>& weights, const std::vector<AffineTransform<S>>& joints,
+                               const Matrix3X<S>& rest) {
+    Matrix3X<S> x(3, rest.cols());
+    for (Index v = 0; v < rest.cols(); ++v) {
+        AffineTransform<S> T{Matrix3<S>::Zero(), Vector3<S>::Zero()};
+        for (Index j = 0; j < num_joints; ++j) {
+            T.linear += weights(v, j) * joints[size_t(j)].linear;
+            T.translation += weights(v, j) * joints[size_t(j)].translation;
+        }
+        x.col(v) = T(rest.col(v));
+    }
+    return x;
+}
+
+template <class S>
+void naive_linear_skinning(benchmark::State& state) {
+    const SmplBody<S> body = chain_body<S>(state.range(0));
+    const auto joints = joint_transforms(body.tree, VolumetricSmpl<S>(body).rest_joints(), walking_pose<S>());
+    const MatrixX<S> weights = body.weights.dense();
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(naive_linear_blend<S>(weights, joints, body.template_vertices));
+    }
     count_vertices<S>(state);
 }
 
-/// Baseline: dense weights and dense pose blend shapes, as the definition reads.
+template <class S>
+void naive_dual_quaternions(benchmark::State& state) {
+    const SmplBody<S> body = chain_body<S>(state.range(0));
+    const auto joints = joint_transforms(body.tree, VolumetricSmpl<S>(body).rest_joints(), walking_pose<S>());
+    const MatrixX<S> weights = body.weights.dense();
+    MatrixX<S> prepared;
+    Matrix3X<S> x(3, state.range(0));
+    for (auto _ : state) {
+        DualQuaternion<S>().prepare_into(joints, prepared);
+        for (Index v = 0; v < x.cols(); ++v) {
+            Index pivot = 0;
+            weights.row(v).maxCoeff(&pivot);
+            Eigen::Matrix<S, 8, 1> sum = Eigen::Matrix<S, 8, 1>::Zero();
+            for (Index j = 0; j < num_joints; ++j) {
+                const bool flipped =
+                    prepared.col(j).template head<4>().dot(prepared.col(pivot).template head<4>()) < S(0);
+                sum += (flipped ? -weights(v, j) : weights(v, j)) * prepared.col(j);
+            }
+            sum /= sum.template head<4>().norm();
+            const Quaternion<S> q = sum.template head<4>(), e = sum.template tail<4>();
+            const Quaternion<S> t = quaternion_product<S>(e, Quaternion<S>(q(0), -q(1), -q(2), -q(3)));
+            x.col(v) =
+                rotation_matrix_from_quaternion<S>(q) * body.template_vertices.col(v) + S(2) * t.template tail<3>();
+        }
+        benchmark::DoNotOptimize(x.data());
+        benchmark::ClobberMemory();
+    }
+    count_vertices<S>(state);
+}
+
+/// Dense weights and dense pose blend shapes.
 template <class S>
 void naive_pose_body(benchmark::State& state) {
     const SmplBody<S> body = chain_body<S>(state.range(0));
     const VolumetricSmpl<S> model(body);
     const MatrixX<S> weights = body.weights.dense(), directions = body.pose_directions.toDense();
     const Pose<S> pose = walking_pose<S>();
-    Matrix3X<S> positions(3, state.range(0));
+    VectorX<S> features(9 * (num_joints - 1)), offsets(3 * state.range(0));
+    Matrix3X<S> shaped(3, state.range(0));
     for (auto _ : state) {
         const auto joints = joint_transforms(body.tree, model.rest_joints(), pose);
-        VectorX<S> features(9 * (num_joints - 1));
         for (Index j = 1; j < num_joints; ++j) {
             const Matrix3<S> transposed = local_rotation(pose, j).transpose() - Matrix3<S>::Identity();
             features.template segment<9>(9 * (j - 1)) = vec<S>(transposed);
         }
-        const VectorX<S> offsets = directions * features;
-        for (Index v = 0; v < positions.cols(); ++v) {
-            AffineTransform<S> T{Matrix3<S>::Zero(), Vector3<S>::Zero()};
-            for (Index j = 0; j < num_joints; ++j) {
-                T.linear += weights(v, j) * joints[size_t(j)].linear;
-                T.translation += weights(v, j) * joints[size_t(j)].translation;
-            }
-            positions.col(v) = T(model.rest_vertices().col(v) + offsets.template segment<3>(3 * v));
-        }
-        benchmark::DoNotOptimize(positions.data());
-        benchmark::ClobberMemory();
+        offsets.noalias() = directions * features;
+        shaped = model.rest_vertices() + Eigen::Map<const Matrix3X<S>>(offsets.data(), 3, shaped.cols());
+        benchmark::DoNotOptimize(naive_linear_blend<S>(weights, joints, shaped));
     }
     count_vertices<S>(state);
 }
@@ -160,23 +232,35 @@ void blend_rotations(benchmark::State& state) {
     count_vertices<S>(state);
 }
 
-constexpr Index smpl_size = 6890, large_size = 50000;
+constexpr Index smpl_size = 6890, volume_size = 12303, large_size = 50000;
 
 }  // namespace
 
-BENCHMARK(pose_body<LinearBlend<float>>)->Name("14 posing a body/linear blending, float")->Arg(smpl_size);
-BENCHMARK(pose_body<LinearBlend<double>>)
-    ->Name("14 posing a body/linear blending, double")
-    ->Arg(1000)
-    ->Arg(smpl_size)
-    ->Arg(large_size);
-BENCHMARK(pose_body<DualQuaternion<float>>)->Name("14 posing a body/dual quaternions, float")->Arg(smpl_size);
+BENCHMARK(skin_points<LinearBlend<float>>)->Name("14 linear blend skinning/float")->Arg(volume_size);
+BENCHMARK(skin_points<LinearBlend<double>>)->Name("14 linear blend skinning/double")->Arg(volume_size);
+BENCHMARK(naive_linear_skinning<float>)
+    ->Name("14 linear blend skinning/baseline Eigen loop with dense weights, float")
+    ->Arg(volume_size);
+BENCHMARK(naive_linear_skinning<double>)
+    ->Name("14 linear blend skinning/baseline Eigen loop with dense weights, double")
+    ->Arg(volume_size);
+BENCHMARK(skin_points<DualQuaternion<float>>)->Name("14 dual quaternion skinning/float")->Arg(volume_size);
+BENCHMARK(skin_points<DualQuaternion<double>>)->Name("14 dual quaternion skinning/double")->Arg(volume_size);
+BENCHMARK(naive_dual_quaternions<float>)
+    ->Name("14 dual quaternion skinning/baseline Eigen loop with dense weights, float")
+    ->Arg(volume_size);
+BENCHMARK(naive_dual_quaternions<double>)
+    ->Name("14 dual quaternion skinning/baseline Eigen loop with dense weights, double")
+    ->Arg(volume_size);
+BENCHMARK(pose_body<LinearBlend<float>>)->Name("14 volumetric SMPL/float")->Arg(volume_size);
+BENCHMARK(pose_body<LinearBlend<double>>)->Name("14 volumetric SMPL/double")->Arg(volume_size);
+BENCHMARK(naive_pose_body<float>)->Name("14 volumetric SMPL/baseline dense arrays, float")->Arg(volume_size);
+BENCHMARK(naive_pose_body<double>)->Name("14 volumetric SMPL/baseline dense arrays, double")->Arg(volume_size);
+BENCHMARK(pose_body<DualQuaternion<float>>)->Name("posing with dual quaternions/float")->Arg(volume_size);
 BENCHMARK(pose_body<DualQuaternion<double>>)
-    ->Name("14 posing a body/dual quaternions, double")
-    ->Arg(1000)
-    ->Arg(smpl_size)
+    ->Name("posing with dual quaternions/double")
+    ->Arg(volume_size)
     ->Arg(large_size);
-BENCHMARK(naive_pose_body<double>)->Name("14 posing a body/baseline dense arrays in double precision")->Arg(smpl_size);
 BENCHMARK(unpose_body<float>)->Name("unposing a body/float")->Arg(smpl_size);
 BENCHMARK(unpose_body<double>)->Name("unposing a body/double")->Arg(smpl_size);
 BENCHMARK(check_body<LinearBlend<double>>)->Name("checking blends/linear, double")->Arg(smpl_size);

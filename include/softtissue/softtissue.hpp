@@ -196,6 +196,7 @@
 #include <softtissue/skinning/linear_blend.hpp>
 #include <softtissue/skinning/motion.hpp>
 #include <softtissue/skinning/pose.hpp>
+#include <softtissue/skinning/pose_blend_shapes.hpp>
 #include <softtissue/skinning/posed_body.hpp>
 #include <softtissue/skinning/resample.hpp>
 #include <softtissue/skinning/retarget.hpp>

@@ -22,6 +22,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/skinning/pose_blend_shapes.hpp>
 #include <softtissue/skinning/posed_body.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 #include <softtissue/skinning/surface_carrier.hpp>
@@ -54,6 +55,7 @@ public:
           shape_directions_(body.shape_directions),
           pose_directions_(body.pose_directions) {
         body.validate("VolumetricSmpl");
+        pose_blend_shapes_ = PoseBlendShapes<S>(pose_directions_);
         joint_template_ = regressed(body.joint_regressor, template_);
         joint_directions_.resize(3 * num_joints(), num_shapes());
         for (Index s = 0; s < num_shapes(); ++s) {
@@ -72,6 +74,7 @@ public:
     const SkinningWeights<S>& weights() const { return weights_; }
     const Matrix3X<S>& template_vertices() const { return template_; }
     const SparseMatrix& pose_directions() const { return pose_directions_; }
+    const PoseBlendShapes<S>& pose_blend_shapes() const { return pose_blend_shapes_; }
 
     /// Shaped rest vertices T + S beta.
     Matrix3X<S> rest_shape(const VectorX<S>& betas) const { return shaped(template_, shape_directions_, betas); }
@@ -96,7 +99,7 @@ public:
         pose_features_into(pose, features);
         Matrix3X<S> offsets(3, num_vertices());
         for (Index v = 0; v < num_vertices(); ++v) {
-            offsets.col(v) = pose_offset(v, features);
+            offsets.col(v) = pose_blend_shapes_.offset(v, features);
         }
         return offsets;
     }
@@ -120,7 +123,7 @@ public:
             for (Index v = begin; v < end; ++v) {
                 Vector3<S> offset = Vector3<S>::Zero();
                 if (options_.pose_correctives) {
-                    offset = pose_offset(v, result.pose_features);
+                    offset = pose_blend_shapes_.offset(v, result.pose_features);
                 }
                 AffineTransform<S>& T = result.transforms[size_t(v)];
                 T = policy_.blend(result.prepared_joints, weights_.row(v));
@@ -142,6 +145,7 @@ public:
         result.weights_ = carrier.weights(weights_);
         result.shape_directions_ = carrier.shape_directions(shape_directions_);
         result.pose_directions_ = carrier.pose_directions(pose_directions_);
+        result.pose_blend_shapes_ = PoseBlendShapes<S>(result.pose_directions_);
         const Matrix3X<S> origin = Matrix3X<S>::Zero(3, volume_vertices.cols());
         result.template_ = volume_vertices - shaped(origin, result.shape_directions_, shape_);
         result.rest_vertices_ = volume_vertices;
@@ -182,16 +186,6 @@ private:
         }
     }
 
-    Vector3<S> pose_offset(Index vertex, const VectorX<S>& features) const {
-        Vector3<S> offset = Vector3<S>::Zero();
-        for (int d = 0; d < 3; ++d) {
-            for (typename SparseMatrix::InnerIterator entry(pose_directions_, 3 * vertex + d); entry; ++entry) {
-                offset(d) += entry.value() * features(entry.col());
-            }
-        }
-        return offset;
-    }
-
     KinematicTree tree_;
     Policy policy_;
     VolumetricSmplOptions options_;
@@ -199,6 +193,7 @@ private:
     SkinningWeights<S> weights_;
     MatrixX<S> shape_directions_;
     SparseMatrix pose_directions_;
+    PoseBlendShapes<S> pose_blend_shapes_;  // the same, as pose() reads them
     Matrix3X<S> joint_template_;
     MatrixX<S> joint_directions_;  // 3 joints x shapes
     VectorX<S> shape_;
