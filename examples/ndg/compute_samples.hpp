@@ -11,7 +11,7 @@
 
 namespace examples {
 
-/// generate_dataset() with the fastest factorisation.
+/// generate_dataset(), compiled once.
 softtissue::GenerationProgress compute_samples(
     const softtissue::DatasetFolder& folder, const BodyFunction& maker, const softtissue::GenerationOptions& options,
     const std::function<bool(const softtissue::GenerationProgress&)>& observer);

@@ -211,6 +211,7 @@
 #include <softtissue/solver/continuation.hpp>
 #include <softtissue/solver/corotated_linear_solver.hpp>
 #include <softtissue/solver/direct_solver.hpp>
+#include <softtissue/solver/gauss_seidel_cg.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/implicit_euler.hpp>
 #include <softtissue/solver/limited_memory_bfgs.hpp>
@@ -222,6 +223,7 @@
 #include <softtissue/solver/quasi_newton.hpp>
 #include <softtissue/solver/report.hpp>
 #include <softtissue/solver/scalar_metric.hpp>
+#include <softtissue/sparse/block_gauss_seidel.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/block_pattern.hpp>
 #include <softtissue/sparse/cholesky_factor.hpp>

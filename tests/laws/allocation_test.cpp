@@ -2,6 +2,7 @@
 // Nothing is allocated per frame.
 #include <support/allocation_counter.hpp>
 
+#include <softtissue/ndg/layered_flesh.hpp>
 #include <softtissue/skinning/blended_rotation.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/inverse.hpp>
@@ -11,8 +12,9 @@
 #include <softtissue/solver/local_global.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 
-#include "../unit/skinning/arm_body.hpp"
+#include <support/layered_limb.hpp>
 #include <support/rigged_bar.hpp>
+#include "../unit/skinning/arm_body.hpp"
 
 #include <doctest/doctest.h>
 
@@ -65,4 +67,27 @@ TEST_CASE("reconstructing a pose again allocates nothing") {
     const AllocationCounter counter;
     frame();
     CHECK(counter.count() == 0);
+}
+
+TEST_CASE("quasi-static solves allocate in their first iteration only") {
+    const LayeredLimb<double> limb;
+    const SequentialExecutor executor;
+    LayeredFlesh<double, SequentialExecutor> flesh(limb.body, {}, executor);
+    Matrix3X<double> x = limb.bent(1.0);
+    std::size_t last = 0;
+    int watched = 0;
+    const SolveReport<double> report =
+        flesh.solve_into(x, quasi_static_options<double>(), [&](const NewtonProgress<double>& progress) {
+            if (progress.iteration >= 1) {
+                Eigen::internal::set_is_malloc_allowed(false);
+                watched += progress.iteration >= 2 ? 1 : 0;
+                CHECK((progress.iteration == 1 || num_allocations == last));
+            }
+            last = num_allocations;
+            return true;
+        });
+    Eigen::internal::set_is_malloc_allowed(true);
+    CHECK(report.succeeded());
+    CHECK(watched > 0);
+    CHECK(report.quasi_newton_steps > 0);
 }

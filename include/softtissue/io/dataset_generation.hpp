@@ -8,7 +8,7 @@
 ///             `observer(progress)` is called after every sample, one call at a time; false ends after the running samples.
 /// Shards      body b belongs to shard b modulo num_shards; shards may run at the same time, on any machine that sees the folder.
 /// Refuses     a shard that does not exist, no thread (InvalidInput); a disk that cannot be written.
-/// Cost        each thread holds one body with its factors
+/// Cost        each thread holds one body with its matrices
 /// Tests       tests/unit/io/dataset_generation_test.cpp, tests/scenario/dataset_generation_test.cpp
 #pragma once
 
@@ -50,7 +50,7 @@ struct GenerationProgress {
 
 namespace detail {
 
-template <SparseCholesky<double> Cholesky, class BodyMaker, class Observer>
+template <NewtonLinearSolver LinearSolver, class BodyMaker, class Observer>
 class DatasetGeneration {
 public:
     DatasetGeneration(const DatasetFolder& folder, const BodyMaker& maker, const GenerationOptions& options,
@@ -155,7 +155,7 @@ private:
                     "data set: the layers of body ", number, " have other cells than those of the mean shape");
             folder_.write_body(number, *body);
         }
-        SampleGenerator<double, Cholesky> generator(*body, folder_.tree(), options_.samples);
+        SampleGenerator<double, LinearSolver> generator(*body, folder_.tree(), options_.samples);
         for (size_t k = 0; k < samples.size() && !stopped_; ++k) {
             const PlannedSample& planned = folder_.plan().samples[size_t(samples[k])];
             const Pose<double>& pose = folder_.plan().poses[size_t(planned.pose)].pose;
@@ -200,10 +200,10 @@ private:
 }  // namespace detail
 
 /// Computes what is missing of one shard; returns where that stands at the end.
-template <SparseCholesky<double> Cholesky = DefaultCholesky<double>, class BodyMaker, class Observer>
+template <NewtonLinearSolver LinearSolver = GaussSeidelCg<double>, class BodyMaker, class Observer>
 GenerationProgress generate_dataset(const DatasetFolder& folder, const BodyMaker& maker,
                                     const GenerationOptions& options, const Observer& observer) {
-    return detail::DatasetGeneration<Cholesky, BodyMaker, Observer>(folder, maker, options, observer).run();
+    return detail::DatasetGeneration<LinearSolver, BodyMaker, Observer>(folder, maker, options, observer).run();
 }
 
 }  // namespace softtissue

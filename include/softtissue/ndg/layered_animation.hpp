@@ -21,7 +21,9 @@
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
 #include <softtissue/skinning/skin_points.hpp>
+#include <softtissue/solver/concepts.hpp>
 #include <softtissue/solver/corotated_linear_solver.hpp>
+#include <softtissue/solver/gauss_seidel_cg.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/local_global.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
@@ -42,24 +44,32 @@ inline constexpr std::array all_animation_methods{AnimationMethod::fem,        A
 /// The method's name, as in the enumeration.
 constexpr const char* to_string(AnimationMethod method) {
     switch (method) {
-        case AnimationMethod::fem: return "fem";
-        case AnimationMethod::lbs: return "lbs";
-        case AnimationMethod::dqs: return "dqs";
-        case AnimationMethod::gradient: return "gradient";
-        case AnimationMethod::projective: return "projective";
-        case AnimationMethod::corotated: return "corotated";
+        case AnimationMethod::fem:
+            return "fem";
+        case AnimationMethod::lbs:
+            return "lbs";
+        case AnimationMethod::dqs:
+            return "dqs";
+        case AnimationMethod::gradient:
+            return "gradient";
+        case AnimationMethod::projective:
+            return "projective";
+        case AnimationMethod::corotated:
+            return "corotated";
     }
     return "unknown";
 }
 
-template <RealScalar S, Executor ExecutorType, SparseCholesky<S> Cholesky = DefaultCholesky<S>>
+template <RealScalar S, Executor ExecutorType, SparseCholesky<S> Cholesky = DefaultCholesky<S>,
+          NewtonLinearSolver LinearSolver = GaussSeidelCg<S>>
 class LayeredAnimation {
 public:
     using Scalar = S;
     using Transforms = std::span<const AffineTransform<Scalar>>;
 
     /// Body and executor must outlive this.
-    LayeredAnimation(const LayeredBody<Scalar>& body, const FleshParameters<Scalar>& parameters, const ExecutorType& executor)
+    LayeredAnimation(const LayeredBody<Scalar>& body, const FleshParameters<Scalar>& parameters,
+                     const ExecutorType& executor)
         : body_(&body),
           executor_(&executor),
           poisson_(body.mesh, PrescribedVertices(body.mesh.num_vertices(), body.prescribed)),
@@ -73,7 +83,7 @@ public:
 
     const LayeredBody<Scalar>& body() const { return *body_; }
     PoissonReconstruction<Prism6, Scalar>& poisson() { return poisson_; }
-    LayeredFlesh<Scalar, ExecutorType, Cholesky>& flesh() { return flesh_; }
+    LayeredFlesh<Scalar, ExecutorType, LinearSolver>& flesh() { return flesh_; }
 
     /// R_p of every cell, valid until the next call.
     const std::vector<Matrix3<Scalar>>& blended_rotations(Transforms joint_transforms) {
@@ -88,13 +98,16 @@ public:
         skin_into(LinearBlend<Scalar>(), joint_transforms, x);
         SolveReport<Scalar> report{.status = SolveStatus::converged};
         switch (method) {
-            case AnimationMethod::lbs: break;
+            case AnimationMethod::lbs:
+                break;
             case AnimationMethod::dqs: {
                 skin_into(DualQuaternion<Scalar>(), joint_transforms, other_);
                 take_free_columns(other_, x);
                 break;
             }
-            case AnimationMethod::gradient: gradient_skin(joint_transforms, x); break;
+            case AnimationMethod::gradient:
+                gradient_skin(joint_transforms, x);
+                break;
             case AnimationMethod::projective: {
                 gradient_skin(joint_transforms, x);
                 report.iterations = projected(x, 30);
@@ -131,7 +144,8 @@ public:
 private:
     template <class Policy>
     void skin_into(const Policy& policy, Transforms joint_transforms, Matrix3X<Scalar>& x) {
-        skin_points_into(policy, joint_transforms, body_->weights, body_->mesh.rest_positions, prepared_joints_, x, *executor_);
+        skin_points_into(policy, joint_transforms, body_->weights, body_->mesh.rest_positions, prepared_joints_, x,
+                         *executor_);
     }
 
     void gradient_skin(Transforms joint_transforms, Matrix3X<Scalar>& x) {
@@ -154,7 +168,7 @@ private:
     GradientSkinning<Prism6, Scalar> gradient_skinning_;
     LocalGlobal<Prism6, Scalar> local_global_;
     CorotatedLinearSolver<Prism6, Scalar, ExecutorType, Cholesky> corotated_;
-    LayeredFlesh<Scalar, ExecutorType, Cholesky> flesh_;
+    LayeredFlesh<Scalar, ExecutorType, LinearSolver> flesh_;
     MatrixX<Scalar> prepared_joints_;
     Matrix3X<Scalar> other_;
 };

@@ -10,7 +10,7 @@
 /// Valid       any pose. Extreme ones have several equilibria: the start is always the same, so that the one that is found
 ///             is a function of body and pose.
 /// Source      Nolte et al. 2026, sec. 3.2, 4.1
-/// Cost        per body: patterns and an ordering; per pose: see LayeredFlesh
+/// Cost        per body: patterns; per pose: see LayeredFlesh
 /// Tests       tests/unit/ndg/sample_generator_test.cpp
 #pragma once
 
@@ -24,6 +24,8 @@
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
 #include <softtissue/skinning/skin_points.hpp>
+#include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/gauss_seidel_cg.hpp>
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 
@@ -58,7 +60,7 @@ struct GeneratedSample {
     bool succeeded() const { return failure.empty(); }
 };
 
-template <RealScalar S, SparseCholesky<S> Cholesky = DefaultCholesky<S>>
+template <RealScalar S, NewtonLinearSolver LinearSolver = GaussSeidelCg<S>>
 class SampleGenerator {
 public:
     using Scalar = S;
@@ -98,7 +100,7 @@ private:
     SequentialExecutor executor_;
     PoissonReconstruction<Prism6, Scalar> poisson_;
     GradientSkinning<Prism6, Scalar> gradient_skinning_;
-    LayeredFlesh<Scalar, SequentialExecutor, Cholesky> flesh_;
+    LayeredFlesh<Scalar, SequentialExecutor, LinearSolver> flesh_;
     Scalar rest_energy_;
     MatrixX<Scalar> prepared_joints_;
 };

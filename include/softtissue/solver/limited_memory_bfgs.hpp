@@ -6,7 +6,7 @@
 /// Equation    p = -B^-1 g, where B takes each remembered step s to the change y of the gradient that it made: B s = y
 /// Valid       steps without positive curvature, s.y <= 0, are not remembered: B stays positive definite and p descends.
 /// Source      Nocedal & Wright 2006, alg. 7.4
-/// Cost        one solve with the matrix, 8 flop per unknown and remembered step. No allocation once `capacity` steps are known.
+/// Cost        one solve with the matrix, 8 flop per unknown and remembered step. Allocates with the first step of a size.
 /// Tests       tests/unit/solver/limited_memory_bfgs_test.cpp
 #pragma once
 
@@ -33,6 +33,12 @@ public:
         const Scalar curvature = step.dot(change);
         if (!(curvature > std::numeric_limits<Scalar>::epsilon() * step.norm() * change.norm())) {
             return;
+        }
+        if (pairs_[0].step.size() != step.size()) {
+            for (Pair& pair : pairs_) {
+                pair.step.resize(step.size());
+                pair.change.resize(step.size());
+            }
         }
         Pair& pair = pairs_[next_];
         pair.step = step;

@@ -12,6 +12,7 @@
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
 ///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
 ///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
+/// Cost        no allocation after the first iteration
 /// Refuses     nothing: outcomes are in the SolveReport. Under -ffinite-math-only NaN checks vanish: a compile error.
 /// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter), 2024b (adaptive filter); Nolte et al. 2026, sec. 3.2
 /// Tests       tests/unit/solver/newton_test.cpp, tests/scenario/static_solve_test.cpp
@@ -30,7 +31,8 @@
 #include <limits>
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ && !defined(SOFTTISSUE_ALLOW_FINITE_MATH)
-#error "softtissue: solvers detect NaN; compile without -ffast-math/-ffinite-math-only or define SOFTTISSUE_ALLOW_FINITE_MATH"
+#error \
+    "softtissue: solvers detect NaN; compile without -ffast-math/-ffinite-math-only or define SOFTTISSUE_ALLOW_FINITE_MATH"
 #endif
 
 namespace softtissue {
@@ -38,10 +40,10 @@ namespace softtissue {
 template <RealScalar S>
 struct NewtonOptions {
     int max_iterations = 100;
-    S step_tolerance = S(1e-9);       ///< [m]
-    S gradient_tolerance = S(0);      ///< [N]; 0: not used
-    S decrement_tolerance = S(0);     ///< g^T H^-1 g / 2 [J]; 0: not used
-    S linear_tolerance = S(1e-3);     ///< relative residual asked of iterative linear solvers
+    S step_tolerance = S(1e-9);    ///< [m]
+    S gradient_tolerance = S(0);   ///< [N]; 0: not used
+    S decrement_tolerance = S(0);  ///< g^T H^-1 g / 2 [J]; 0: not used
+    S linear_tolerance = S(1e-3);  ///< asked of iterative linear solvers; a decrement is short by about its square
     PsdFilter filter = PsdFilter::absolute;
     /// Clamp in place of `filter` after a step whose decrease the filtered model predicted within one per cent.
     bool adapts_filter = false;
@@ -90,7 +92,8 @@ public:
             if (report_.residual <= options_.gradient_tolerance) {
                 return ended(SolveStatus::converged);
             }
-            if (!observer_(NewtonProgress<Scalar>{report_.iterations, report_.energy, report_.residual, report_.step})) {
+            if (!observer_(
+                    NewtonProgress<Scalar>{report_.iterations, report_.energy, report_.residual, report_.step})) {
                 return ended(SolveStatus::cancelled);
             }
             if (report_.iterations == options_.max_iterations) {
@@ -145,23 +148,22 @@ private:
         last_gradient_.swap(gradient_);
         gradient_ = objective_.gradient(d_);
         // maxCoeff skips NaN on some paths; the sum does not
-        report_.residual = std::isfinite(gradient_.sum()) && gradient_.size() > 0
-                               ? gradient_.cwiseAbs().maxCoeff()
-                               : gradient_.sum();
+        report_.residual =
+            std::isfinite(gradient_.sum()) && gradient_.size() > 0 ? gradient_.cwiseAbs().maxCoeff() : gradient_.sum();
     }
 
     bool find_direction() {
-        const VectorX<Scalar> rhs = -gradient_;
+        rhs_ = -gradient_;
         hessian_ = HessianKind::filtered;
         if (filtered_ahead_ == 0) {
-            hessian_ = solve_with(PsdFilter::none, rhs) ? HessianKind::exact : HessianKind::indefinite;
+            hessian_ = solve_with(PsdFilter::none) ? HessianKind::exact : HessianKind::indefinite;
             filtered_ahead_ = hessian_ == HessianKind::exact ? 0 : options_.filtered_after_failure + 1;
             report_.indefinite_hessians += hessian_ == HessianKind::exact ? 0 : 1;
         }
         if (hessian_ != HessianKind::exact) {
             --filtered_ahead_;
             ++report_.filtered_iterations;
-            if (!solve_with(filter_, rhs)) {
+            if (!solve_with(filter_)) {
                 return false;
             }
         }
@@ -181,9 +183,9 @@ private:
         }
     }
 
-    bool solve_with(PsdFilter filter, const VectorX<Scalar>& rhs) {
-        const LinearSolveResult result = linear_solver_.solve(objective_.hessian(d_, filter), rhs, options_.linear_tolerance,
-                                                              direction_, objective_.executor());
+    bool solve_with(PsdFilter filter) {
+        const LinearSolveResult result = linear_solver_.solve(
+            objective_.hessian(d_, filter), rhs_, options_.linear_tolerance, direction_, objective_.executor());
         report_.linear_iterations += result.iterations;
         return result.is_positive_definite && std::isfinite(direction_.sum()) && gradient_.dot(direction_) <= Scalar(0);
     }
@@ -198,7 +200,9 @@ private:
 
     /// Ends early where a step gains less than asked, and with the exact Hessian next where the decrement's tolerance is met.
     void take_quasi_newton_steps(Scalar least_decrease) {
-        const auto solve_again = [&](const VectorX<Scalar>& rhs, VectorX<Scalar>& p) { linear_solver_.solve_again(rhs, p); };
+        const auto solve_again = [&](const VectorX<Scalar>& rhs, VectorX<Scalar>& p) {
+            linear_solver_.solve_again(rhs, p);
+        };
         Scalar decrease = least_decrease;
         for (int k = 0; k < options_.quasi_newton_steps && decrease >= least_decrease; ++k) {
             memory_.direction_into(gradient_, solve_again, direction_);
@@ -232,7 +236,8 @@ private:
             objective_.prescribed().add_into(direction_, length, trial_);
             const Scalar energy = energy_at(trial_);
             const bool is_resolved = -length * slope > energy_resolution();
-            if (energy <= report_.energy + sufficient_decrease * length * slope + (is_resolved ? Scalar(0) : energy_resolution())) {
+            if (energy <= report_.energy + sufficient_decrease * length * slope +
+                              (is_resolved ? Scalar(0) : energy_resolution())) {
                 d_.swap(trial_);
                 predicted_ratio_ = (energy - report_.energy) / (slope * (length - length * length / Scalar(2)));
                 report_.energy = energy;
@@ -254,8 +259,8 @@ private:
     HessianKind hessian_ = HessianKind::exact;
     int filtered_ahead_ = std::isfinite(options_.far_step) ? 1 : 0;
     Scalar predicted_ratio_ = Scalar(0);  // actual over predicted decrease of the last step
-    Scalar length_ = Scalar(0);  // of the last step, in directions
-    VectorX<Scalar> gradient_, last_gradient_, direction_;
+    Scalar length_ = Scalar(0);           // of the last step, in directions
+    VectorX<Scalar> gradient_, last_gradient_, rhs_, direction_;
     Matrix3X<Scalar> trial_;
     LimitedMemoryBfgs<Scalar> memory_;
 };
@@ -269,7 +274,9 @@ SolveReport<typename ObjectiveType::Scalar> minimise(ObjectiveType& objective, L
                                                      Matrix3X<typename ObjectiveType::Scalar>& d,
                                                      const NewtonOptions<typename ObjectiveType::Scalar>& options = {},
                                                      const Observer& observer = {}) {
-    return detail::NewtonIteration<ObjectiveType, LinearSolver, Observer>(objective, linear_solver, d, options, observer).run();
+    return detail::NewtonIteration<ObjectiveType, LinearSolver, Observer>(objective, linear_solver, d, options,
+                                                                          observer)
+        .run();
 }
 
 }  // namespace softtissue

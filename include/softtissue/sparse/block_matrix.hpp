@@ -51,6 +51,10 @@ public:
     const BlockPattern& pattern() const { return pattern_; }
     const SparseMatrix& matrix() const { return matrix_; }
 
+    /// Numbers in a scalar column of vertex j, and where the c-th one begins.
+    Index column_size(Index j) const { return 3 * (pattern_.offset(j + 1) - pattern_.offset(j)); }
+    Index column_begin(Index j, int c) const { return 9 * pattern_.offset(j) + c * column_size(j); }
+
     void set_zero() { matrix_.coeffs().setZero(); }
 
     /// Adds `block` at row pattern().rows(j)[rank], column j.
@@ -97,10 +101,6 @@ public:
     }
 
 private:
-    Index column_begin(Index j, int c) const {
-        return 9 * pattern_.offset(j) + c * 3 * (pattern_.offset(j + 1) - pattern_.offset(j));
-    }
-
     BlockPattern pattern_;
     SparseMatrix matrix_;
 };

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/ndg/layered_flesh.hpp>
 
+#include <softtissue/core/thread_executor.hpp>
+#include <softtissue/solver/direct_solver.hpp>
+
 #include <support/layered_limb.hpp>
 
 #include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
 
 using namespace softtissue;
 using namespace softtissue_test;
@@ -63,6 +69,29 @@ TEST_CASE("bent, the energy falls from any start to the same equilibrium; a tigh
     CHECK((tighter - x).colwise().norm().mean() < 1e-5);
 }
 
+TEST_CASE("conjugate gradients and a factorisation find the same equilibrium, on any number of threads") {
+    const LayeredLimb<double> limb;
+    const SequentialExecutor executor;
+    LayeredFlesh<double, SequentialExecutor> flesh(limb.body, {}, executor);
+    LayeredFlesh<double, SequentialExecutor, DirectSolver<double>> factored(limb.body, {}, executor);
+    for (const double angle : {0.2, 0.7, 1.2}) {
+        CAPTURE(angle);
+        Matrix3X<double> x = limb.bent(angle), y = x, z = x;
+        const SolveReport<double> fast = flesh.solve_into(x), plain = factored.solve_into(y);
+        REQUIRE(fast.status == SolveStatus::converged);
+        REQUIRE(plain.status == SolveStatus::converged);
+        CHECK(fast.linear_iterations > 0);
+        CHECK(fast.decrement <= 1e-4);
+        CHECK(fast.iterations <= plain.iterations + 2);
+        CHECK(std::abs(fast.energy - plain.energy) < 1e-4);
+        CHECK((x - y).colwise().norm().mean() < 2e-5);
+        const ThreadExecutor threads(3);
+        LayeredFlesh<double, ThreadExecutor> threaded(limb.body, {}, threads);
+        CHECK(threaded.solve_into(z).iterations == fast.iterations);
+        CHECK(z == x);
+    }
+}
+
 TEST_CASE("what cannot be solved is reported, sizes are checked") {
     const LayeredLimb<double> limb;
     const SequentialExecutor executor;
@@ -74,5 +103,6 @@ TEST_CASE("what cannot be solved is reported, sizes are checked") {
     x(0, 5) = std::numeric_limits<double>::quiet_NaN();
     CHECK(flesh.solve_into(x).status == SolveStatus::not_finite);
     x.conservativeResize(3, 7);
-    CHECK_THROWS_WITH_AS((void)flesh.solve_into(x), doctest::Contains("layered flesh: 7 positions, expected "), InvalidInput);
+    CHECK_THROWS_WITH_AS((void)flesh.solve_into(x), doctest::Contains("layered flesh: 7 positions, expected "),
+                         InvalidInput);
 }
