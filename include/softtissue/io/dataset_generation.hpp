@@ -19,6 +19,8 @@
 #include <softtissue/io/layered_body_file.hpp>
 #include <softtissue/ndg/sample_generator.hpp>
 #include <softtissue/ndg/shaped_body.hpp>
+#include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/gauss_seidel_cg.hpp>
 
 #include <algorithm>
 #include <atomic>
