@@ -152,7 +152,30 @@ public:
         return result;
     }
 
+    /// The same in another precision and at the same shape, blended by `policy` there: what was built in double runs in float.
+    template <RealScalar To, SkinningPolicy ToPolicy = LinearBlend<To>>
+    VolumetricSmpl<To, ToPolicy> cast(ToPolicy policy = {}) const {
+        VolumetricSmpl<To, ToPolicy> result(tree_, std::move(policy), options_);
+        result.template_ = template_.template cast<To>();
+        result.weights_ = SkinningWeights<To>(weights_.dense().template cast<To>().eval());
+        result.shape_directions_ = shape_directions_.template cast<To>();
+        result.pose_directions_ = pose_directions_.template cast<To>();
+        result.pose_blend_shapes_ = PoseBlendShapes<To>(result.pose_directions_);
+        result.joint_template_ = joint_template_.template cast<To>();
+        result.joint_directions_ = joint_directions_.template cast<To>();
+        result.shape_ = shape_.template cast<To>();
+        result.rest_vertices_ = rest_vertices_.template cast<To>();
+        result.rest_joints_ = rest_joints_.template cast<To>();
+        return result;
+    }
+
 private:
+    template <RealScalar, SkinningPolicy>
+    friend class VolumetricSmpl;
+
+    VolumetricSmpl(const KinematicTree& tree, Policy policy, VolumetricSmplOptions options)
+        : tree_(tree), policy_(std::move(policy)), options_(options) {}
+
     /// One column per joint: the regressor's combination of the columns of `vertices`.
     static Matrix3X<S> regressed(const SparseMatrix& regressor, ConstRef<Matrix3X<S>> vertices) {
         Matrix3X<S> joints = Matrix3X<S>::Zero(3, regressor.rows());

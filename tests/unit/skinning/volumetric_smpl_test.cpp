@@ -119,6 +119,18 @@ TEST_CASE_TEMPLATE("shape: linear, joints follow the surface, missing coefficien
     CHECK(model.rest_joints() == model.joints(two_betas<S>()));
 }
 
+TEST_CASE("in another precision: the same body in the same shape, blended as asked") {
+    VolumetricSmpl<double> model(arm_body<double>());
+    model.set_shape(two_betas<double>());
+    const Pose<double> pose = random_pose<double>(model.num_joints(), 5);
+    const Pose<float> same_pose{pose.rotation_vectors.cast<float>(), pose.translation.cast<float>()};
+    const VolumetricSmpl<float> single = model.cast<float>();
+    CHECK(single.shape() == model.shape().cast<float>());
+    CHECK((single.pose(same_pose).positions.cast<double>() - model.pose(pose).positions).cwiseAbs().maxCoeff() < 1e-5);
+    const VolumetricSmpl<double, DualQuaternion<double>> rigid(arm_body<double>());
+    CHECK(rigid.cast<double, DualQuaternion<double>>().pose(pose).positions == rigid.pose(pose).positions);
+}
+
 TEST_CASE("pose blend shapes: one rotation entry drives its own column") {
     SmplBody<double> body = arm_body<double>();
     MatrixX<double> directions = MatrixX<double>::Zero(3 * body.num_vertices(), 27);
