@@ -15,19 +15,52 @@
 #include <support/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace softtissue_test {
 
 using namespace softtissue;
 
+/// What is stepped, and how.
+template <RealScalar S>
+struct HumanRun {
+    int num_steps;
+    AvatarOptions<S> options = {};
+    FungOrthotropicParameters<S> tissue = {.normal_modulus = S(1e4), .tangential_modulus = S(4e4)};
+    S full_thickness = S(0.025);
+    /// Poses that are kept of the motion, those between them interpolated linearly: the velocity jumps.
+    double key_frame_rate = 0;
+};
+
 template <RealScalar S>
 struct MovingHuman {
     using Field = FungOrthotropicField<S>;
 
+    FungOrthotropicParameters<S> tissue;
     SmplBody<S> body = procedural_human<S>();
-    SoftLayer<S> layer = make_soft_layer(body);
-    CellMesh<Tet4, S> mesh = split_prisms(layer.mesh);
-    Motion<S> motion = procedural_jump<S>(120.0);
+    SoftLayer<S> layer;
+    CellMesh<Tet4, S> mesh;
+    Motion<S> motion;
+
+    explicit MovingHuman(const HumanRun<S>& run)
+        : tissue(run.tissue),
+          layer(make_soft_layer(body, {.full_thickness = run.full_thickness})),
+          mesh(split_prisms(layer.mesh)),
+          motion(procedural_jump<S>(1 / double(run.options.time_step))) {
+        if (run.key_frame_rate > 0) {
+            const size_t stride = size_t(std::lround(1 / (double(run.options.time_step) * run.key_frame_rate)));
+            for (size_t k = 0; k + stride < motion.poses.size(); k += stride) {
+                const Pose<S> from = motion.poses[k], to = motion.poses[k + stride];
+                for (size_t i = 1; i < stride; ++i) {
+                    const S t = S(i) / S(stride);
+                    motion.poses[k + i].rotation_vectors = (1 - t) * from.rotation_vectors + t * to.rotation_vectors;
+                    motion.poses[k + i].translation = (1 - t) * from.translation + t * to.translation;
+                }
+            }
+        }
+    }
 
     Field field() const {
         const std::vector<Matrix3<S>> axes = orthotropy_bases<S>(mesh.cells, column_normals(layer));
@@ -35,7 +68,7 @@ struct MovingHuman {
         for (size_t c = 0; c < axes.size(); ++c) {
             bases.col(Index(c)) = vec<S>(axes[c]);
         }
-        return Field({.normal_modulus = S(1e4), .tangential_modulus = S(4e4)}, bases);
+        return Field(tissue, bases);
     }
 };
 
@@ -45,20 +78,24 @@ struct RunSummary {
     int not_converged = 0;
     int most_iterations = 0;
     double mean_iterations = 0;
-    double largest_lag = 0;         ///< [m]
-    double largest_start_error = 0; ///< of the velocity at the start [m/s]
+    double largest_lag = 0;          ///< [m]
+    double largest_start_error = 0;  ///< of the velocity at the start [m/s]
+    double mean_quasi_newton_steps = 0;
     bool is_finite = true;
     std::string worst_status = "converged";
+    std::vector<Matrix3X<double>> positions;  // after each step [m]
 };
 
 template <RealScalar S>
-RunSummary run_human(int num_steps, const AvatarOptions<S>& options = {}) {
-    const MovingHuman<S> human;
+RunSummary run_human(const HumanRun<S>& run) {
+    const AvatarOptions<S>& options = run.options;
+    const int num_steps = run.num_steps;
+    const MovingHuman<S> human(run);
     const SequentialExecutor executor;
     const VolumetricSmpl<S> skin(human.body);
     const VolumetricSmpl<S> tissue = make_tissue_model(skin, human.layer);
-    SoftTissueAvatar<Tet4, FungOrthotropicField<S>> avatar(tissue, human.mesh, human.layer.prescribed_vertices, human.field(),
-                                                           executor, options);
+    SoftTissueAvatar<Tet4, FungOrthotropicField<S>> avatar(tissue, human.mesh, human.layer.prescribed_vertices,
+                                                           human.field(), executor, options);
     RunSummary summary;
     summary.inverted_at_rest = human.mesh.count_inverted(human.mesh.rest_positions);
 
@@ -76,13 +113,16 @@ RunSummary run_human(int num_steps, const AvatarOptions<S>& options = {}) {
         }
         summary.most_iterations = std::max(summary.most_iterations, report.iterations);
         summary.mean_iterations += double(report.iterations) / num_steps;
+        summary.mean_quasi_newton_steps += double(report.quasi_newton_steps) / num_steps;
+        summary.positions.push_back(avatar.positions().template cast<double>());
         summary.is_finite = summary.is_finite && avatar.positions().allFinite() && avatar.velocities().allFinite();
         const S lag = (avatar.positions() - avatar.skinned()).colwise().norm().maxCoeff();
         summary.largest_lag = std::max(summary.largest_lag, double(lag));
     }
-    WARN(num_steps << " steps: Newton iterations " << summary.mean_iterations << " mean, " << summary.most_iterations
-                   << " most; " << summary.not_converged << " not converged (" << summary.worst_status
-                   << "); tissue up to " << 1e3 * summary.largest_lag << " mm from the skinned shape");
+    WARN(num_steps << " steps: quasi-Newton steps " << summary.mean_quasi_newton_steps << " mean; Newton iterations "
+                   << summary.mean_iterations << " mean, " << summary.most_iterations << " most; "
+                   << summary.not_converged << " not converged (" << summary.worst_status << "); tissue up to "
+                   << 1e3 * summary.largest_lag << " mm from the skinned shape");
     return summary;
 }
 
