@@ -137,7 +137,7 @@ public:
     /// N laws side by side, law(i) in lane i.
     template <int N, class Law>
     static FungOrthotropic<Pack<Scalar, N>> packed(const Law& law) requires RealScalar<Scalar> {
-        return {packed_fung_coefficients<N>([&](int i) -> const Coefficients& { return law(i).coefficients_; }),
+        return {packed_fung_coefficients<N>([&](int i) { return law(i).coefficients_; }),
                 packed_matrix<N>([&](int i) { return law(i).basis_; })};
     }
 
