@@ -50,9 +50,9 @@ TEST_CASE_TEMPLATE("positions -> residuals -> targets -> positions", S, float, d
         Matrix3X<S> targets, gradients;
         target_gradients_into<S, S>(residuals, rotations, targets);
         poisson.gradients_into(x, gradients);
-        // sums of the same six products of positions and shape gradients, in another order
-        const S rounding =
-            S(6) * std::numeric_limits<S>::epsilon() * x.cwiseAbs().maxCoeff() * rest.gradients.cwiseAbs().maxCoeff();
+        // six products of a position and a shape gradient, rounded twice each, turned by R^T and back: three numbers to one
+        const S rounding = S(2 * 6 * 3) * std::numeric_limits<S>::epsilon() * x.cwiseAbs().maxCoeff() *
+                           rest.gradients.cwiseAbs().maxCoeff();
         CHECK((targets - gradients).cwiseAbs().maxCoeff() < rounding);
         Matrix3X<S> found = x;
         for (const std::int32_t v : poisson.prescribed().free_vertices()) {
