@@ -43,7 +43,7 @@ template <RealScalar S>
 struct AvatarOptions {
     S density = S(1000);          ///< [kg/m^3]
     S time_step = S(1) / S(120);  ///< [s]
-    /// A step below its tolerance ends a time step; it is applied, so the error is smaller. max_steps = 0: Newton's method only.
+    /// A time step ends where about `tolerance` is left of the way to its minimum. max_steps = 0: Newton's method only.
     QuasiNewtonOptions<S> quasi_newton = {};
     /// Where quasi-Newton steps converge slowly; the error is far smaller than this step.
     NewtonOptions<S> newton = {.max_iterations = 50, .step_tolerance = S(1e-5)};

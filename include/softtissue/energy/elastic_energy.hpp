@@ -64,14 +64,8 @@ public:
 
     /// F of one cell.
     Matrix3<Scalar> deformation_gradient(const Matrix3X<Scalar>& d, Index cell) const {
-        Matrix3<Scalar> F = rest_.reference_gradient(cell);
-        const NodePositions<ElementType, Scalar> g = rest_.gradients(cell);
-        for (int i = 0; i < num_nodes; ++i) {
-            for (int j = 0; j < 3; ++j) {
-                F.col(j) += d.col(cells()(i, cell)) * g(j, i);
-            }
-        }
-        return F;
+        return deformation_gradient<Scalar>(Mesh::gather(d, cells().col(cell)), rest_.gradients(cell),
+                                            rest_.reference_gradient(cell));
     }
 
     /// Cells whose deformation gradient has det F <= 0.
@@ -144,16 +138,20 @@ private:
         return mesh;
     }
 
-    Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
-        const NodePositions<ElementType, Lanes> d_nodes = nodes_.gather(d, pack);
-        const auto g = rest_.packed_gradients(pack);
-        Matrix3<Lanes> F = rest_.packed_reference_gradient(pack);
+    /// F0 + sum_i d_i g_i^T, of a cell or of a pack of cells.
+    template <class T, class Gradients>
+    static Matrix3<T> deformation_gradient(const NodePositions<ElementType, T>& d, const Gradients& g, Matrix3<T> F) {
         for (int i = 0; i < num_nodes; ++i) {
             for (int j = 0; j < 3; ++j) {
-                F.col(j) += d_nodes.col(i) * g(j, i);
+                F.col(j) += d.col(i) * g(j, i);
             }
         }
         return F;
+    }
+
+    Matrix3<Lanes> packed_deformation_gradient(const Matrix3X<Scalar>& d, Index pack) const {
+        return deformation_gradient<Lanes>(nodes_.gather(d, pack), rest_.packed_gradients(pack),
+                                           rest_.packed_reference_gradient(pack));
     }
 
     /// The laws of a pack of cells.

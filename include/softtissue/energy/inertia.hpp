@@ -60,12 +60,8 @@ public:
     }
 
     template <Executor E>
-    void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E&) const {
-        for (Index v = 0; v < d.cols(); ++v) {
-            if (masses_(v) > Scalar(0)) {
-                gradient.col(v) += stiffness(v) * placement_->pull_back(v, offset(d, v));
-            }
-        }
+    void add_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor) const {
+        add_energy_and_gradient(d, gradient, executor);
     }
 
     template <Executor E>
