@@ -4,6 +4,7 @@
 // converged steps. The body is body_small of the shared data in jumping jacks, simulated from head to toe (41,340 unknowns), or the
 // embedded body in its jump.
 #include "machine_limits.hpp"
+#include "plain_triplets.hpp"
 
 #include <examples/support/embedded_human.hpp>
 #include <softtissue/anatomy/make_soft_layer.hpp>
@@ -189,32 +190,16 @@ public:
     }
     const Eigen::SparseMatrix<double>& hessian(const Matrix3X<double>& d, PsdFilter filter) {
         triplets_.clear();
-        const auto add = [&](Index i, Index j, const Matrix3<double>& block) {
-            for (int k = 0; k < 9; ++k) {
-                triplets_.emplace_back(int(3 * i + k % 3), int(3 * j + k / 3), block.data()[k]);
-            }
-        };
         for (Index j = 0; j < prescribed_.num_free(); ++j) {
             const Index v = prescribed_.free_vertices()[size_t(j)];
             const double stiffness = inertia_.masses()(v) / (time_step * time_step);
-            add(j, j, stiffness * placement.map(v).transpose() * placement.map(v));
+            benchmarks::append_block<double>(j, j, stiffness * placement.map(v).transpose() * placement.map(v),
+                                             triplets_);
         }
         for (Index c = 0; c < mesh_.num_cells(); ++c) {
-            const Matrix9<double> H =
-                rest_.volumes(c) * projected_hessian(field_.at(c), deformation_gradient(d, c), filter);
-            const NodePositions<Prism6, double> g = rest_.cell_gradients(c);
-            for (int b = 0; b < 6; ++b) {
-                const Eigen::Matrix<double, 9, 3> T =
-                    g(0, b) * H.leftCols<3>() + g(1, b) * H.middleCols<3>(3) + g(2, b) * H.rightCols<3>();
-                const std::int32_t column = prescribed_.free_index(mesh_.cells(b, c));
-                for (int a = 0; a < 6 && column >= 0; ++a) {
-                    const std::int32_t row = prescribed_.free_index(mesh_.cells(a, c));
-                    if (row >= 0) {
-                        add(row, column,
-                            g(0, a) * T.topRows<3>() + g(1, a) * T.middleRows<3>(3) + g(2, a) * T.bottomRows<3>());
-                    }
-                }
-            }
+            benchmarks::append_prism<double>(
+                rest_.volumes(c) * projected_hessian(field_.at(c), deformation_gradient(d, c), filter),
+                rest_.cell_gradients(c), mesh_.cells, c, prescribed_, triplets_);
         }
         hessian_.resize(3 * prescribed_.num_free(), 3 * prescribed_.num_free());
         hessian_.setFromTriplets(triplets_.begin(), triplets_.end());

@@ -2,6 +2,7 @@
 // Energy, forces and stiffness of the body of the paper's size, beside the same by plain elements and triplets.
 #include "machine_limits.hpp"
 #include "paper_body.hpp"
+#include "plain_triplets.hpp"
 
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/energy/elastic_energy.hpp>
@@ -142,21 +143,8 @@ void triplet_hessian(benchmark::State& state) {
     for (auto _ : state) {
         triplets.clear();
         for_each_plain_cell(scene, [&](Index c, const auto& F, const auto& g, auto V) {
-            const Matrix9<S> H = V * projected_hessian(scene.material, F, PsdFilter::clamp);
-            for (int b = 0; b < 6; ++b) {
-                const Eigen::Matrix<S, 9, 3> T = g(0, b) * H.template leftCols<3>() +
-                                                 g(1, b) * H.template middleCols<3>(3) +
-                                                 g(2, b) * H.template rightCols<3>();
-                const std::int32_t column = held.free_index(scene.mesh.cells(b, c));
-                for (int a = 0; a < 6 && column >= 0; ++a) {
-                    const Matrix3<S> block = g(0, a) * T.template topRows<3>() + g(1, a) * T.template middleRows<3>(3) +
-                                             g(2, a) * T.template bottomRows<3>();
-                    const std::int32_t row = held.free_index(scene.mesh.cells(a, c));
-                    for (int k = 0; k < 9 && row >= 0; ++k) {
-                        triplets.emplace_back(3 * row + k % 3, 3 * column + k / 3, block.data()[k]);
-                    }
-                }
-            }
+            benchmarks::append_prism<S>(V * projected_hessian(scene.material, F, PsdFilter::clamp), g, scene.mesh.cells,
+                                        c, held, triplets);
         });
         matrix.setFromTriplets(triplets.begin(), triplets.end());
         benchmark::DoNotOptimize(matrix.valuePtr());

@@ -3,12 +3,12 @@
 // Times are by the clock; "B/cell" is the largest memory that the set-up and one iteration need beyond what was there, a prism.
 #include "layered_sheet.hpp"
 #include "machine_limits.hpp"
+#include "random_springs.hpp"
 
 #include <softtissue/core/random.hpp>
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/energy/elastic_energy.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
-#include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/material/field.hpp>
 #include <softtissue/material/stable_neo_hookean.hpp>
 #include <softtissue/mesh/embedding.hpp>
@@ -126,33 +126,13 @@ void poisson_frame(benchmark::State& state) {
     run(state, memory, int(state.range(1)), [&] { poisson.solve_into(targets, x, executor); });
 }
 
-/// Springs of random stiffness between all vertices that share a cell.
-BlockMatrix<double> springs(const Sheet& sheet) {
-    const PrescribedVertices prescribed(sheet.mesh.num_vertices(), sheet.prescribed);
-    std::vector<std::vector<std::int32_t>> neighbours(size_t(prescribed.num_free()));
-    StencilAssembly<6, double>(sheet.mesh.cells, sheet.mesh.num_vertices()).add_neighbours(prescribed, neighbours);
-    const BlockPattern pattern(std::move(neighbours));
-    BlockMatrix<double> K(pattern);
-    RandomGenerator random(1);
-    for (Index v = 0; v < pattern.num_columns(); ++v) {
-        const std::int32_t own = pattern.rank(v, std::int32_t(v));
-        K.add(v, own, Matrix3<double>::Identity());
-        for (const std::int32_t u : pattern.rows(v)) {
-            if (u < v) {
-                const Vector3<double> direction(random.normal(), random.normal(), random.normal());
-                const Matrix3<double> block = direction * direction.transpose() + 0.1 * Matrix3<double>::Identity();
-                K.add(v, own, block);
-                K.add(u, pattern.rank(u, u), block);
-                K.add(v, pattern.rank(v, u), -block);
-                K.add(u, pattern.rank(u, std::int32_t(v)), -block);
-            }
-        }
-    }
-    return K;
+BlockMatrix<double> springs_of(const Sheet& sheet) {
+    return benchmarks::random_springs(sheet.mesh.cells,
+                                      PrescribedVertices(sheet.mesh.num_vertices(), sheet.prescribed));
 }
 
 void newton_system(benchmark::State& state) {
-    const BlockMatrix<double> K = springs(sheet_of(state));
+    const BlockMatrix<double> K = springs_of(sheet_of(state));
     const PeakMemory memory;
     SupernodalCholesky<double> cholesky;
     cholesky.analyzePattern(K.matrix());

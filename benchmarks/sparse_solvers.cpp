@@ -5,12 +5,11 @@
 
 #include "layered_limb.hpp"
 #include "machine_limits.hpp"
+#include "random_springs.hpp"
 
-#include <softtissue/core/random.hpp>
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
-#include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 #include <softtissue/sparse/cholesky_factor.hpp>
@@ -35,30 +34,8 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// 80,256 unknowns: springs of random 3x3 stiffness between all vertices that share a cell.
 const SparseMatrix& flesh_matrix() {
-    static const BlockMatrix<double> matrix = [] {
-        const CellMesh<Prism6, double>& mesh = limb().mesh;
-        const PrescribedVertices prescribed(mesh.num_vertices(), limb().bone);
-        std::vector<std::vector<std::int32_t>> neighbours(size_t(prescribed.num_free()));
-        StencilAssembly<6, double>(mesh.cells, mesh.num_vertices()).add_neighbours(prescribed, neighbours);
-        const BlockPattern pattern(std::move(neighbours));
-        BlockMatrix<double> K(pattern);
-        RandomGenerator random(1);
-        for (Index v = 0; v < pattern.num_columns(); ++v) {
-            const std::int32_t own = pattern.rank(v, std::int32_t(v));
-            K.add(v, own, Matrix3<double>::Identity());
-            for (const std::int32_t u : pattern.rows(v)) {
-                if (u < v) {
-                    const Vector3<double> direction(random.normal(), random.normal(), random.normal());
-                    const Matrix3<double> block = direction * direction.transpose() + 0.1 * Matrix3<double>::Identity();
-                    K.add(v, own, block);
-                    K.add(u, pattern.rank(u, u), block);
-                    K.add(v, pattern.rank(v, u), -block);
-                    K.add(u, pattern.rank(u, std::int32_t(v)), -block);
-                }
-            }
-        }
-        return K;
-    }();
+    static const BlockMatrix<double> matrix =
+        benchmarks::random_springs(limb().mesh.cells, PrescribedVertices(limb().mesh.num_vertices(), limb().bone));
     return matrix.matrix();
 }
 
