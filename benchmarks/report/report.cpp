@@ -52,6 +52,16 @@ bool is_counter(const std::string& key) {
     return !own.contains(key);
 }
 
+/// Google Benchmark writes NaN and Infinity, which JSON has not, as the value of a key.
+std::string with_null_for_nan(std::string json) {
+    for (const std::string word : {": NaN", ": -NaN", ": Infinity", ": -Infinity"}) {
+        for (size_t at = json.find(word); at != std::string::npos; at = json.find(word, at)) {
+            json.replace(at, word.size(), ": null");
+        }
+    }
+    return json;
+}
+
 double number(const Json& run, const char* key, const std::string& name) {
     require(run.contains(key) && run[key].is_number(), name, ": no number \"", key, "\"");
     return run[key].get<double>();
@@ -206,7 +216,7 @@ BenchmarkName parse_name(const std::string& text) {
 }
 
 std::vector<Measurement> read_measurements(const std::string& json, const std::string& program) {
-    const Json file = Json::parse(json, nullptr, false);
+    const Json file = Json::parse(with_null_for_nan(json), nullptr, false);
     require(!file.is_discarded(), program, ": not JSON; was the benchmark interrupted?");
     require(file.is_object() && file.contains("benchmarks") && file["benchmarks"].is_array(), program,
             ": no list \"benchmarks\", expected what --benchmark_out writes");

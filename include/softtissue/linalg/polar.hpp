@@ -2,7 +2,8 @@
 /// @file
 /// The rotation nearest to a 3x3 matrix, and its derivative.
 ///
-/// What        R(F) = U V^T of the signed singular value decomposition: det R = +1 for every F, inverted ones included
+/// What        R(F) = U V^T of the signed singular value decomposition: det R = +1 for every F, inverted ones included;
+///             from a quaternion of its own or one that is given, or from the decomposition where that is at hand
 /// Equation    R = argmin |F - R|^2 over rotations;
 ///             dR/dF = sum_{i<j} q_ij q_ij^T / (s_i + s_j),  q_ij = vec(u_i v_j^T - u_j v_i^T)
 /// Shapes      F, R: 3x3.  dR/dF: 9x9 on column-major vec(F), symmetric, positive semi-definite, rank 3.
@@ -10,13 +11,17 @@
 ///             singular value: inverted or rank-one F whose two smallest stretches cancel).  There R is one of the
 ///             minimisers, and the denominators are kept at or above epsilon, so the derivative stays finite.
 /// Source      derivative: Smith, de Goes, Kim 2019, sec. 4 (twist modes)
-/// Cost        one svd3; the derivative adds three rank-one updates
+/// Cost        R: rotation_start.hpp (not from a given quaternion), rotation_newton.hpp, and one svd3 where Newton's method does
+///             not get there (for a pack: in any lane).  The derivative: one svd3 and three rank-one updates.
 /// Tests       tests/unit/linalg/polar_test.cpp
 #pragma once
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/quaternion.hpp>
+#include <softtissue/linalg/rotation_newton.hpp>
+#include <softtissue/linalg/rotation_start.hpp>
 #include <softtissue/linalg/svd3.hpp>
 
 #include <algorithm>
@@ -30,10 +35,24 @@ Matrix3<Scalar> polar_rotation(const Svd3<Scalar>& svd) {
     return svd.U * svd.V.transpose();
 }
 
+/// The rotation nearest to F, det = +1, from that of the quaternion q, the faster the nearer it is; q becomes that of the result.
+template <RealLanes Scalar>
+Matrix3<Scalar> polar_rotation(const Matrix3<Scalar>& F, Quaternion<Scalar>& q) {
+    const auto is_reached = refine_rotation(F, q);
+    if (!all_of(is_reached)) {
+        const Quaternion<Scalar> decomposed = quaternion_from_rotation_matrix(polar_rotation(svd3(F)));
+        for (int k = 0; k < 4; ++k) {
+            q(k) = select(is_reached, q(k), decomposed(k));
+        }
+    }
+    return rotation_matrix_from_quaternion(q);
+}
+
 /// The rotation nearest to F, det = +1.
 template <RealLanes Scalar>
 Matrix3<Scalar> polar_rotation(const Matrix3<Scalar>& F) {
-    return polar_rotation(svd3(F));
+    Quaternion<Scalar> q = rotation_start(F);
+    return polar_rotation(F, q);
 }
 
 /// s_i + s_j, the stiffness of the rotation against turning in the plane (i, j), kept at or above epsilon.

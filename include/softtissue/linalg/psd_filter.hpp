@@ -13,6 +13,7 @@
 #pragma once
 
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/symmetric_eigen.hpp>
 
@@ -48,7 +49,7 @@ auto is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
         if (!any_of(is_definite)) {
             break;
         }
-        const Scalar inverse = Scalar(1) / H(k, k);
+        const Scalar inverse = reciprocal(H(k, k));
         for (int j = k + 1; j < N; ++j) {
             const Scalar factor = H(j, k) * inverse;
             for (int i = j; i < N; ++i) {

@@ -9,8 +9,7 @@
 /// Valid       every finite F; see linalg/polar.hpp for where R is not unique
 /// Packs       as many matrices at a time as a register has lanes; none depends on its neighbours
 /// Source      Bouaziz et al. 2014; Komaritzan & Botsch 2018
-/// Cost        rotation_start.hpp (not from a former fit), rotation_newton.hpp; a pack one of whose lanes is not reached from its
-///             start is decomposed
+/// Cost        polar.hpp
 /// Tests       tests/unit/linalg/rotation_fit_test.cpp
 #pragma once
 
@@ -22,8 +21,6 @@
 #include <softtissue/linalg/matrix_packs.hpp>
 #include <softtissue/linalg/polar.hpp>
 #include <softtissue/linalg/quaternion.hpp>
-#include <softtissue/linalg/rotation_newton.hpp>
-#include <softtissue/linalg/rotation_start.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -65,19 +62,6 @@ void store_quaternions(const Quaternion<Pack<S, N>>& packed, Index first, Quater
     }
 }
 
-/// From the quaternion q, where Newton's method gets there, else by decomposition; q becomes that of the result.
-template <RealLanes Lanes>
-Matrix3<Lanes> fit_rotation(const Matrix3<Lanes>& F, Quaternion<Lanes>& q) {
-    const auto is_reached = refine_rotation(F, q);
-    if (!all_of(is_reached)) {
-        const Quaternion<Lanes> decomposed = quaternion_from_rotation_matrix(polar_rotation(F));
-        for (int k = 0; k < 4; ++k) {
-            q(k) = select(is_reached, q(k), decomposed(k));
-        }
-    }
-    return rotation_matrix_from_quaternion(q);
-}
-
 namespace detail {
 
 template <RealScalar S>
@@ -88,13 +72,6 @@ Index num_matrices(const Matrix3X<S>& gradients) {
 
 }  // namespace detail
 
-/// The rotation nearest to F, lane by lane.
-template <RealLanes Lanes>
-Matrix3<Lanes> nearest_rotation(const Matrix3<Lanes>& F) {
-    Quaternion<Lanes> q = rotation_start(F);
-    return fit_rotation(F, q);
-}
-
 /// Writes one rotation per matrix; allocates nothing. Same bits for every executor.
 template <RealScalar S, Executor E = SequentialExecutor>
 void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, const E& executor = {}) {
@@ -103,7 +80,7 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, co
     rotations.resize(3, gradients.cols());
     executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
         for (Index first = N * begin; first < N * end; first += N) {
-            store_matrices<N>(nearest_rotation(load_matrices<N>(gradients, first)), first, rotations);
+            store_matrices<N>(polar_rotation(load_matrices<N>(gradients, first)), first, rotations);
         }
     });
 }
@@ -120,7 +97,7 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Quaternions<S>& quaternion
         for (Index first = N * begin; first < N * end; first += N) {
             const Matrix3<Pack<S, N>> F = load_matrices<N>(gradients, first);
             Quaternion<Pack<S, N>> q = load_quaternions<N>(quaternions, first);
-            store_matrices<N>(fit_rotation(F, q), first, rotations);
+            store_matrices<N>(polar_rotation(F, q), first, rotations);
             store_quaternions<N>(q, first, quaternions);
         }
     });

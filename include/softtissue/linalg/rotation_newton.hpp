@@ -16,6 +16,7 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/quaternion.hpp>
 
@@ -27,7 +28,6 @@ namespace softtissue {
 /// Where the quaternion became that of the nearest rotation; at most `max_steps` steps.
 template <RealLanes Scalar>
 auto refine_rotation(const Matrix3<Scalar>& F, Quaternion<Scalar>& q, int max_steps = 6) {
-    using std::sqrt;
     const Scalar zero(0), one(1), half(RealOf<Scalar>(0.5));
     const Scalar smallest_step(std::numeric_limits<RealOf<Scalar>>::epsilon());
     const Scalar largest(std::numeric_limits<RealOf<Scalar>>::max());  // beyond, steps would be zero
@@ -42,14 +42,14 @@ auto refine_rotation(const Matrix3<Scalar>& F, Quaternion<Scalar>& q, int max_st
         const Scalar c00 = m11 * m22 - m12 * m12, c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11;
         const Scalar c11 = m00 * m22 - m02 * m02, c12 = m01 * m02 - m00 * m12, c22 = m00 * m11 - m01 * m01;
         const Scalar determinant = m00 * c00 + m01 * c01 + m02 * c02;
-        const Scalar scale = half / determinant;
+        const Scalar scale = half * reciprocal(determinant);
         const Scalar a0 = S(2, 1) - S(1, 2), a1 = S(0, 2) - S(2, 0), a2 = S(1, 0) - S(0, 1);
         const Scalar h0 = scale * (c00 * a0 + c01 * a1 + c02 * a2);
         const Scalar h1 = scale * (c01 * a0 + c11 * a1 + c12 * a2);
         const Scalar h2 = scale * (c02 * a0 + c12 * a1 + c22 * a2);
         const Scalar squared = h0 * h0 + h1 * h1 + h2 * h2;
         const Quaternion<Scalar> turned = quaternion_product<Scalar>(q, {one, h0, h1, h2});
-        const Scalar inverse_length = one / sqrt(Scalar(turned.dot(turned)));
+        const Scalar inverse_length = reciprocal_sqrt(Scalar(turned.dot(turned)));
         for (int k = 0; k < 4; ++k) {
             q(k) = select(is_done, q(k), Scalar(turned(k) * inverse_length));
         }

@@ -17,6 +17,7 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/quaternion.hpp>
@@ -38,7 +39,7 @@ Scalar largest_rotation_root(const Matrix3<Scalar>& F) {
     Scalar root(std::numbers::sqrt3_v<RealOf<Scalar>>);
     for (int step = 0; step < num_steps; ++step) {
         const Scalar excess = root * root - Scalar(1);
-        root -= (excess * excess - linear * root - constant) / (Scalar(4) * root * excess - linear);
+        root -= (excess * excess - linear * root - constant) * reciprocal(Scalar(Scalar(4) * root * excess - linear));
     }
     return root;
 }
@@ -78,9 +79,7 @@ Quaternion<Scalar> largest_adjugate_column(const Eigen::Matrix<Scalar, 4, 4>& M)
 /// The unit quaternion; see the file comment.
 template <RealLanes Scalar>
 Quaternion<Scalar> rotation_start(const Matrix3<Scalar>& F) {
-    using std::sqrt;
-    const Scalar one(1);
-    const Matrix3<Scalar> G = F * Scalar(one / sqrt(Scalar(F.squaredNorm())));
+    const Matrix3<Scalar> G = F * reciprocal_sqrt(Scalar(F.squaredNorm()));
     const Scalar root = detail::largest_rotation_root(G);
     const Scalar trace = G(0, 0) + G(1, 1) + G(2, 2);
     Eigen::Matrix<Scalar, 4, 4> M;
@@ -95,7 +94,7 @@ Quaternion<Scalar> rotation_start(const Matrix3<Scalar>& F) {
         M(j + 1, j + 1) -= trace + root;
     }
     const Quaternion<Scalar> q = detail::largest_adjugate_column(M);
-    return q * Scalar(one / sqrt(Scalar(q.dot(q))));
+    return q * reciprocal_sqrt(Scalar(q.dot(q)));
 }
 
 }  // namespace softtissue

@@ -16,7 +16,9 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/unit_scale.hpp>
 
 #include <Eigen/Core>
 
@@ -46,7 +48,6 @@ Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>& b) {
 template <class Scalar>
 Vector3<Scalar> any_orthogonal(const Vector3<Scalar>& u) {
     using std::abs;
-    using std::sqrt;
     const Scalar x = abs(u(0)), y = abs(u(1)), z = abs(u(2));
     const auto is_x = (x <= y) & (x <= z);
     const auto is_y = y <= z;
@@ -54,7 +55,7 @@ Vector3<Scalar> any_orthogonal(const Vector3<Scalar>& u) {
     const Vector3<Scalar> axis(select(is_x, one, zero), select(is_x, zero, select(is_y, one, zero)),
                                select(is_x, zero, select(is_y, zero, one)));
     const Vector3<Scalar> across = axis - u * u.dot(axis);
-    return across * Scalar(one / sqrt(across.dot(across)));
+    return across * reciprocal_sqrt(Scalar(across.dot(across)));
 }
 
 /// Rotates columns p and q of B (and of V alike) until they are orthogonal; whether they were not.
@@ -62,7 +63,6 @@ template <class Scalar>
 auto orthogonalise_columns(Matrix3<Scalar>& B, Matrix3<Scalar>& V, int p, int q) {
     using std::abs;
     using std::copysign;
-    using std::sqrt;
     const Scalar alpha = B.col(p).dot(B.col(p));
     const Scalar beta = B.col(q).dot(B.col(q));
     const Scalar gamma = B.col(p).dot(B.col(q));
@@ -74,9 +74,9 @@ auto orthogonalise_columns(Matrix3<Scalar>& B, Matrix3<Scalar>& V, int p, int q)
         return is_oblique;
     }
     const Scalar one(1);
-    const Scalar zeta = (beta - alpha) / (gamma + gamma);
-    const Scalar t = copysign(one, zeta) / (abs(zeta) + sqrt(Scalar(one + zeta * zeta)));
-    const Scalar cosine_or_1 = select(is_oblique, Scalar(one / sqrt(Scalar(one + t * t))), one);
+    const Scalar zeta = (beta - alpha) * reciprocal(Scalar(gamma + gamma));
+    const Scalar t = copysign(reciprocal(Scalar(abs(zeta) + quick_sqrt(Scalar(one + zeta * zeta)))), zeta);
+    const Scalar cosine_or_1 = select(is_oblique, reciprocal_sqrt(Scalar(one + t * t)), one);
     const Scalar sine_or_0 = select(is_oblique, Scalar(cosine_or_1 * t), Scalar(0));
     for (Matrix3<Scalar>* M : {&B, &V}) {
         for (int i = 0; i < 3; ++i) {
@@ -107,17 +107,16 @@ template <class Scalar>
 void split_lengths(const Matrix3<Scalar>& B, Svd3<Scalar>& result) {
     using std::max;
     using std::min;
-    using std::sqrt;
     const Scalar zero(0), one(1);
-    const Scalar length = sqrt(Scalar(B.col(0).dot(B.col(0))));
+    const Scalar length = quick_sqrt(Scalar(B.col(0).dot(B.col(0))));
     const auto is_zero = length == zero;
-    const Scalar inverse = one / select(is_zero, one, length);
+    const Scalar inverse = reciprocal(select(is_zero, one, length));
     const Vector3<Scalar> u0(select(is_zero, one, Scalar(B(0, 0) * inverse)), B(1, 0) * inverse, B(2, 0) * inverse);
     const Vector3<Scalar> b1 = B.col(1) - u0 * u0.dot(B.col(1));
     const Scalar squared = b1.dot(b1);
     const auto is_rank_one = squared < Scalar(std::numeric_limits<RealOf<Scalar>>::min());
-    const Scalar width = sqrt(select(is_rank_one, zero, squared));
-    Vector3<Scalar> u1 = b1 * Scalar(one / select(is_rank_one, one, width));
+    const Scalar width = quick_sqrt(select(is_rank_one, zero, squared));
+    Vector3<Scalar> u1 = b1 * reciprocal(select(is_rank_one, one, width));
     if (any_of(is_rank_one)) {
         const Vector3<Scalar> other = any_orthogonal(u0);
         for (int i = 0; i < 3; ++i) {
@@ -141,19 +140,18 @@ Svd3<Scalar> svd3(const Matrix3<Scalar>& F) {
     using std::abs;
     using std::max;
     using Real = RealOf<Scalar>;
-    const Scalar zero(0), one(1);
-    Scalar scale(0);
+    const Scalar zero(0);
+    Scalar largest(0);
     Scalar not_a_number(0);
     for (int k = 0; k < 9; ++k) {
-        scale = max(scale, Scalar(abs(F.data()[k])));
+        largest = max(largest, Scalar(abs(F.data()[k])));
         not_a_number += F.data()[k] * zero;
     }
     const auto is_finite = not_a_number == zero;
-    const auto is_usable = is_finite & (scale > zero);
-    const Scalar divisor = select(is_usable, scale, one);
+    const UnitScale<Scalar> scale(select(is_finite, largest, zero));
     Matrix3<Scalar> B;
     for (int k = 0; k < 9; ++k) {
-        B.data()[k] = select(is_finite, F.data()[k], zero) / divisor;
+        B.data()[k] = scale.unit(select(is_finite, F.data()[k], zero));
     }
     Svd3<Scalar> result;
     result.V = Matrix3<Scalar>::Identity();
@@ -170,7 +168,9 @@ Svd3<Scalar> svd3(const Matrix3<Scalar>& F) {
     detail::sort_columns(B, result.V, 0, 2);
     detail::sort_columns(B, result.V, 1, 2);
     detail::split_lengths(B, result);
-    result.sigma *= divisor;
+    for (int k = 0; k < 3; ++k) {
+        result.sigma(k) = scale.original(result.sigma(k));
+    }
     if (!all_of(is_finite)) {
         const Scalar nan(std::numeric_limits<Real>::quiet_NaN());
         for (int k = 0; k < 9; ++k) {

@@ -14,7 +14,9 @@
 
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/unit_scale.hpp>
 
 #include <cmath>
 #include <limits>
@@ -39,13 +41,13 @@ Scalar& lower_entry(Eigen::Matrix<Scalar, N, N>& H, int i, int j) {
 template <class Scalar, class Mask, int N>
 void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& V, int p, int q) {
     using std::copysign;
-    using std::sqrt;
     const Scalar zero(0), one(1);
     const Scalar difference = H(q, q) - H(p, p);
     const Scalar twice = H(q, p) + H(q, p);
-    const Scalar root = sqrt(Scalar(difference * difference + twice * twice));
-    const Scalar t = select(is_off, Scalar(twice / (difference + copysign(root, difference))), zero);
-    const Scalar c = one / sqrt(Scalar(t * t + one));
+    const Scalar root = quick_sqrt(Scalar(difference * difference + twice * twice));
+    const Scalar t =
+        select(is_off, Scalar(twice * reciprocal(Scalar(difference + copysign(root, difference)))), zero);
+    const Scalar c = reciprocal_sqrt(Scalar(t * t + one));
     const Scalar s = t * c;
     const auto turn = [&](Scalar& a, Scalar& b) {
         const Scalar old = a;
@@ -74,17 +76,21 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
     using Limits = std::numeric_limits<RealOf<Scalar>>;
     // With a largest entry of 1 no square leaves the range of the scalar.
     const Scalar smallest(Limits::min());
-    Scalar scale = smallest;
+    Scalar largest(0);
     for (int j = 0; j < N; ++j) {
         for (int i = j; i < N; ++i) {
-            scale = max(scale, Scalar(abs(lower(i, j))));
+            largest = max(largest, Scalar(abs(lower(i, j))));
         }
     }
-    Eigen::Matrix<Scalar, N, N> H = lower / scale;
+    const UnitScale<Scalar> scale(largest);
+    Eigen::Matrix<Scalar, N, N> H;
     SymmetricEigen<Scalar, N> result;
     for (int j = 0; j < N; ++j) {
         for (int i = 0; i < N; ++i) {
             result.vectors(i, j) = i == j ? Scalar(1) : Scalar(0);
+            if (i >= j) {
+                H(i, j) = scale.unit(lower(i, j));
+            }
         }
     }
     // below half an ulp of both diagonal entries a rotation changes nothing
@@ -112,7 +118,7 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
         }
     }
     for (int i = 0; i < N; ++i) {
-        result.values(i) = H(i, i) * scale;
+        result.values(i) = scale.original(H(i, i));
     }
     return result;
 }

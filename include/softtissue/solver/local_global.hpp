@@ -77,7 +77,7 @@ private:
         quaternions_.resize(poisson_->num_cells(), 4);
         poisson_->mapped_gradients_into(x, targets_, executor, [&](Index first, const Matrix3<Lanes>& F) {
             Quaternion<Lanes> q = is_first ? rotation_start(F) : load_quaternions<N>(quaternions_, first);
-            const Matrix3<Lanes> R = fit_rotation(F, q);
+            const Matrix3<Lanes> R = polar_rotation(F, q);
             store_quaternions<N>(q, first, quaternions_);
             return R;
         });

@@ -14,7 +14,7 @@ namespace {
 
 template <class S>
 S error(const Matrix3<S>& F) {
-    return (rotation_matrix_from_quaternion(rotation_start(F)) - polar_rotation(F)).norm();
+    return (rotation_matrix_from_quaternion(rotation_start(F)) - polar_rotation(svd3(F))).norm();
 }
 
 }  // namespace
