@@ -108,18 +108,9 @@ auto packed_sample() {
     return packed_law<natural_lanes<typename M::Scalar>>([&](int) -> const M& { return material; });
 }
 
-template <class S>
-struct EnergyAndStress {
-    S energy;
-    Matrix3<S> stress;
-};
-
 template <class M>
 auto energy_and_stress(const M& material) {
-    using S = typename M::Scalar;
-    return [material](const Matrix3<S>& F) {
-        return EnergyAndStress<S>{material.energy_density(F), material.first_piola(F)};
-    };
+    return [material](const Matrix3<typename M::Scalar>& F) { return energy_and_first_piola(material, F); };
 }
 
 template <class M>

@@ -100,10 +100,10 @@ public:
         return assembly_.template add_packed_energy_and_gradient<width>(
             executor,
             [&](Index pack, Scalar* energies, Scalar* slots) {
-                const Matrix3<Lanes> F = packed_deformation_gradient(d, pack);
-                const auto material = law(pack);
-                Lanes(rest_.packed_volume(pack) * material.energy_density(F)).store(energies);
-                forces_into(pack, material.first_piola(F), slots);
+                const EnergyAndStress<Lanes> psi =
+                    energy_and_first_piola(law(pack), packed_deformation_gradient(d, pack));
+                Lanes(rest_.packed_volume(pack) * psi.energy).store(energies);
+                forces_into(pack, psi.stress, slots);
             },
             gradient);
     }

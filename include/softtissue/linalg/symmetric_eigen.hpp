@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// Eigenvalues and eigenvectors of a small symmetric matrix by Jacobi rotations.
+/// Eigenvalues and eigenvectors of a small symmetric matrix: by Jacobi rotations up to 4 x 4, beyond by QL steps.
 ///
 /// What        H = V diag(values) V^T; values in no particular order, V orthogonal.
 /// Shapes      H, V: N x N, N up to about a dozen; only the lower triangle of H is read
-/// Valid       finite H. Small eigenvalues of graded matrices keep their relative accuracy better than by QR.
+/// Valid       finite H. Up to 4 x 4 small eigenvalues of graded matrices keep their relative accuracy.
 ///             Packs: a converged lane stands still while others go on, so that it never depends on them.
-/// Source      Golub & Van Loan 2013, sec. 8.5
+/// Source      Golub & Van Loan 2013, sec. 8.5 (Jacobi); tridiagonal_ql.hpp
 /// Why         plain loops: a fixed-size 9x9 eigensolver of Eigen costs eleven seconds of compile time, this one none
-/// Cost        5 to 8 sweeps of N (N - 1) / 2 rotations, 9 N flop each
+/// Cost        Jacobi: 5 to 8 sweeps of N (N - 1) / 2 rotations, 9 N flop each
 /// Tests       tests/unit/linalg/symmetric_eigen_test.cpp
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/tridiagonal_ql.hpp>
 #include <softtissue/linalg/unit_scale.hpp>
 
 #include <cmath>
@@ -92,6 +93,14 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
                 H(i, j) = scale.unit(lower(i, j));
             }
         }
+    }
+    if constexpr (N > 4) {
+        result.values = diagonalise_by_ql(H);
+        for (int i = 0; i < N; ++i) {
+            result.values(i) = scale.original(result.values(i));
+        }
+        result.vectors = H;
+        return result;
     }
     // below half an ulp of both diagonal entries a rotation changes nothing
     const Scalar threshold(Limits::epsilon() * Limits::epsilon() / RealOf<Scalar>(16));

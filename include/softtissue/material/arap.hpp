@@ -13,7 +13,7 @@
 ///             Refuses k <= 0 (InvalidInput).
 /// Source      Sorkine, Alexa 2007; eigensystem: Smith, de Goes, Kim 2019, sec. 4
 /// Departs     no weight 1/2: the factor of the paper's per-edge sum is in k
-/// Cost        one svd3; Hessian: plus one isotropic_hessian
+/// Cost        one polar_rotation; Hessian: one svd3 and one isotropic_hessian
 /// Tests       tests/unit/material/arap_test.cpp
 #pragma once
 
@@ -55,13 +55,13 @@ public:
 
     Parameters parameters() const { return {.stiffness = stiffness_}; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const {
-        const Matrix3<Scalar> strain = F - polar_rotation(F);
-        return stiffness_ * strain.squaredNorm();
-    }
+    Scalar energy_density(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).energy; }
 
-    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
-        return Scalar(2) * stiffness_ * (F - polar_rotation(F));
+    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).stress; }
+
+    EnergyAndStress<Scalar> energy_and_first_piola(const Matrix3<Scalar>& F) const {
+        const Matrix3<Scalar> strain = F - polar_rotation(F);
+        return {stiffness_ * strain.squaredNorm(), Scalar(2) * stiffness_ * strain};
     }
 
     Matrix9<Scalar> hessian(const Matrix3<Scalar>& F) const { return projected_hessian(F, PsdFilter::none); }

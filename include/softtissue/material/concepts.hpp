@@ -3,6 +3,7 @@
 /// What a material is: a small value that maps F to energy density, stress and Hessian.
 ///
 /// HyperelasticMaterial   `using Scalar`, energy_density(F) [J/m^3], first_piola(F) [Pa], hessian(F) 9x9 [Pa] on column-major vec(F)
+/// HasEnergyAndFirstPiola also energy_and_first_piola(F): both at once, where they share work
 /// HasProjectedHessian    also projected_hessian(F, PsdFilter): eigenvalues of the 9x9 Hessian filtered, in closed form where one exists
 /// MaterialField          a law per cell: at(cell) returns a material or a reference to one
 ///
@@ -11,6 +12,7 @@
 #pragma once
 
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 
 #include <concepts>
@@ -26,6 +28,28 @@ concept HyperelasticMaterial =
         { m.first_piola(F) } -> std::same_as<Matrix3<typename M::Scalar>>;
         { m.hessian(F) } -> std::same_as<Matrix9<typename M::Scalar>>;
     };
+
+/// Energy density [J/m^3] and first Piola stress [Pa] at one F.
+template <FieldScalar Scalar>
+struct EnergyAndStress {
+    Scalar energy;
+    Matrix3<Scalar> stress;
+};
+
+template <class M>
+concept HasEnergyAndFirstPiola = HyperelasticMaterial<M> && requires(const M& m, const Matrix3<typename M::Scalar>& F) {
+    { m.energy_and_first_piola(F) } -> std::same_as<EnergyAndStress<typename M::Scalar>>;
+};
+
+/// Energy density and stress at F.
+template <HyperelasticMaterial M>
+EnergyAndStress<typename M::Scalar> energy_and_first_piola(const M& material, const Matrix3<typename M::Scalar>& F) {
+    if constexpr (HasEnergyAndFirstPiola<M>) {
+        return material.energy_and_first_piola(F);
+    } else {
+        return {material.energy_density(F), material.first_piola(F)};
+    }
+}
 
 template <class M>
 concept HasProjectedHessian =

@@ -11,7 +11,7 @@
 ///             signed singular values (see polar.hpp); on that set H is finite.  Volume change is penalised only to first
 ///             order.  Refuses mu <= 0, 2 mu + 3 lambda <= 0 (InvalidInput).
 /// Source      Müller, Gross 2004, "Interactive Virtual Materials"; eigensystem: Smith, de Goes, Kim 2019, sec. 4
-/// Cost        one svd3; Hessian: plus one isotropic_hessian
+/// Cost        one polar_rotation; Hessian: one svd3 and one isotropic_hessian
 /// Tests       tests/unit/material/corotated_linear_polar_test.cpp
 #pragma once
 
@@ -61,15 +61,17 @@ public:
 
     Parameters parameters() const { return lame_; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const {
-        const Matrix3<Scalar> R = polar_rotation(F);
-        const Scalar trace = strain_trace(F, R);
-        return lame_.mu * (F - R).squaredNorm() + lame_.lambda / Scalar(2) * trace * trace;
-    }
+    Scalar energy_density(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).energy; }
 
-    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
+    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).stress; }
+
+    EnergyAndStress<Scalar> energy_and_first_piola(const Matrix3<Scalar>& F) const {
         const Matrix3<Scalar> R = polar_rotation(F);
-        return Scalar(2) * lame_.mu * (F - R) + lame_.lambda * strain_trace(F, R) * R;
+        const Matrix3<Scalar> strain = F - R;
+        const Scalar trace = F.cwiseProduct(R).sum() - Scalar(3);  // tr(R^T F - I)
+        const Scalar pressure = lame_.lambda * trace;
+        return {lame_.mu * strain.squaredNorm() + pressure * trace / Scalar(2),
+                Scalar(2) * lame_.mu * strain + pressure * R};
     }
 
     Matrix9<Scalar> hessian(const Matrix3<Scalar>& F) const { return projected_hessian(F, PsdFilter::none); }
@@ -96,11 +98,6 @@ public:
 
 private:
     CorotatedLinearPolar() = default;
-
-    /// tr(R^T F - I).
-    static Scalar strain_trace(const Matrix3<Scalar>& F, const Matrix3<Scalar>& R) {
-        return F.cwiseProduct(R).sum() - Scalar(3);
-    }
 
     LameParameters<Scalar> lame_;
 };

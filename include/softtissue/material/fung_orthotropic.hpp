@@ -144,25 +144,25 @@ public:
     const Coefficients& coefficients() const { return coefficients_; }
     const Matrix3<Scalar>& basis() const { return basis_; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const {
-        using std::exp;
-        using std::expm1;
-        const Matrix3<Scalar> Eb = strain(F);
-        const Exponent x = exponent(Eb);
-        const Scalar continued = exp(x.within) * x.excess * (Scalar(1) + x.excess / Scalar(2));
-        const Scalar dilation = determinant(F) - Scalar(1);
-        return coefficients_.mu * (expm1(x.within) + continued) / coefficients_.eta +
-               coefficients_.lambda / Scalar(2) * dilation * dilation;
-    }
+    Scalar energy_density(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).energy; }
 
-    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
-        using std::exp;
+    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).stress; }
+
+    EnergyAndStress<Scalar> energy_and_first_piola(const Matrix3<Scalar>& F) const {
+        using std::expm1;
+        const Scalar one(1), two(2);
         const Matrix3<Scalar> Eb = strain(F);
         const Exponent x = exponent(Eb);
-        const Scalar dpsi_dsigma = coefficients_.mu * exp(x.within) * (Scalar(1) + x.excess);
-        const Matrix3<Scalar> FS = F * (dpsi_dsigma * dsigma_dstrain(Eb));
+        const Scalar growth = expm1(x.within);
+        const Scalar exponential = one + growth;  // growth >= 0: no digit is lost
+        const Scalar continued = exponential * x.excess * (one + x.excess / two);
         const Matrix3<Scalar> cof = cofactor(F);
-        return FS + coefficients_.lambda * (determinant(F, cof) - Scalar(1)) * cof;
+        const Scalar dilation = determinant(F, cof) - one;
+        const Scalar pressure = coefficients_.lambda * dilation;
+        const Scalar dpsi_dsigma = coefficients_.mu * exponential * (one + x.excess);
+        const Matrix3<Scalar> FS = F * (dpsi_dsigma * dsigma_dstrain(Eb));
+        return {coefficients_.mu * (growth + continued) / coefficients_.eta + pressure * dilation / two,
+                FS + pressure * cof};
     }
 
     Matrix9<Scalar> hessian(const Matrix3<Scalar>& F) const {

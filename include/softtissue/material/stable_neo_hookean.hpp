@@ -76,14 +76,15 @@ public:
 
     Parameters parameters() const { return {.mu = mu_, .lambda = lambda_}; }
 
-    Scalar energy_density(const Matrix3<Scalar>& F) const {
-        const Scalar pressure = volume_stress(determinant(F));
-        return (mu_ * (F.squaredNorm() - Scalar(3)) + pressure * pressure / lambda_) / Scalar(2);
-    }
+    Scalar energy_density(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).energy; }
 
-    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const {
+    Matrix3<Scalar> first_piola(const Matrix3<Scalar>& F) const { return energy_and_first_piola(F).stress; }
+
+    EnergyAndStress<Scalar> energy_and_first_piola(const Matrix3<Scalar>& F) const {
         const Matrix3<Scalar> cof = cofactor(F);
-        return mu_ * F + volume_stress(determinant(F, cof)) * cof;
+        const Scalar pressure = volume_stress(determinant(F, cof));
+        return {(mu_ * (F.squaredNorm() - Scalar(3)) + pressure * pressure / lambda_) / Scalar(2),
+                mu_ * F + pressure * cof};
     }
 
     Matrix9<Scalar> hessian(const Matrix3<Scalar>& F) const {
