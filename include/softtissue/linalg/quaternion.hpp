@@ -73,16 +73,31 @@ Vector3<S> rotation_vector_from_quaternion(const Quaternion<S>& q) {
     return v * (S(2) * atan2(length, w) / length);
 }
 
+/// Rotation matrix of q / |q|, from q and 2 q / |q|^2.
+template <FieldScalar S>
+[[gnu::always_inline]] inline Matrix3<S> rotation_matrix_from_scaled_quaternions(const Quaternion<S>& q,
+                                                                                 const Quaternion<S>& scaled) {
+    const S one(1);
+    const S wx = q(0) * scaled(1), wy = q(0) * scaled(2), wz = q(0) * scaled(3);
+    const S xx = q(1) * scaled(1), xy = q(1) * scaled(2), xz = q(1) * scaled(3);
+    const S yy = q(2) * scaled(2), yz = q(2) * scaled(3), zz = q(3) * scaled(3);
+    Matrix3<S> R;
+    R(0, 0) = one - (yy + zz);
+    R(1, 0) = xy + wz;
+    R(2, 0) = xz - wy;
+    R(0, 1) = xy - wz;
+    R(1, 1) = one - (xx + zz);
+    R(2, 1) = yz + wx;
+    R(0, 2) = xz + wy;
+    R(1, 2) = yz - wx;
+    R(2, 2) = one - (xx + yy);
+    return R;
+}
+
 /// Rotation matrix of a unit quaternion.
 template <FieldScalar S>
 Matrix3<S> rotation_matrix_from_quaternion(const Quaternion<S>& q) {
-    const S two(2);
-    const S w = q(0), x = q(1), y = q(2), z = q(3);
-    Matrix3<S> R;
-    R << S(1) - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y),  //
-        two * (x * y + w * z), S(1) - two * (x * x + z * z), two * (y * z - w * x),   //
-        two * (x * z - w * y), two * (y * z + w * x), S(1) - two * (x * x + y * y);
-    return R;
+    return rotation_matrix_from_scaled_quaternions<S>(q, S(2) * q);
 }
 
 /// Unit quaternion of a rotation matrix; its largest component is positive.
@@ -123,7 +138,7 @@ Vector3<S> rotation_vector_from_rotation_matrix(const Matrix3<S>& R) {
 
 /// The quaternion of the rotation that applies `b` first, then `a`.
 template <FieldScalar S>
-Quaternion<S> quaternion_product(const Quaternion<S>& a, const Quaternion<S>& b) {
+[[gnu::always_inline]] inline Quaternion<S> quaternion_product(const Quaternion<S>& a, const Quaternion<S>& b) {
     return {
         a(0) * b(0) - a(1) * b(1) - a(2) * b(2) - a(3) * b(3), a(0) * b(1) + a(1) * b(0) + a(2) * b(3) - a(3) * b(2),
         a(0) * b(2) - a(1) * b(3) + a(2) * b(0) + a(3) * b(1), a(0) * b(3) + a(1) * b(2) - a(2) * b(1) + a(3) * b(0)};

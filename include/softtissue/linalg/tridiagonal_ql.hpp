@@ -5,7 +5,7 @@
 /// What        A = Q diag(values) Q^T: A becomes Q, whose columns are the eigenvectors; values in no particular order
 /// Equation    reflections I - b v v^T make A tridiagonal; QL steps with Wilkinson's shift make that diagonal
 /// Shapes      A: N x N, of which the lower triangle is read; values: N
-/// Valid       entries at most 1 in size: smaller than the smallest normal number over epsilon they count as zero
+/// Valid       entries at most 1 in size; what the form has below the diagonal counts as zero where it is below epsilon^2
 /// Accuracy    a few epsilon |A|, for small eigenvalues too: not relative to each, as by Jacobi rotations (symmetric_eigen.hpp)
 /// Packs       a lane whose eigenvalue is found stands still while others go on, so that it never depends on them
 /// Source      Golub & Van Loan 2013, sec. 8.3; the step: Martin, Wilkinson 1968, "The Implicit QL Algorithm"
@@ -121,8 +121,8 @@ template <class Scalar, int N>
 auto is_coupled(const Tridiagonal<Scalar, N>& T, int i) {
     using std::abs;
     using Limits = std::numeric_limits<RealOf<Scalar>>;
-    const Scalar size = abs(T.diagonal(i)) + abs(T.diagonal(i + 1));
-    return abs(T.below(i)) > size * Limits::epsilon() + Scalar(Limits::min());
+    const Scalar size = abs(T.diagonal(i)) + abs(T.diagonal(i + 1)) + Scalar(Limits::epsilon());
+    return abs(T.below(i)) > size * Scalar(Limits::epsilon());
 }
 
 /// One QL step on the rows from `first` on where `is_active`: of each block that is coupled, with the shift for `first`.

@@ -17,7 +17,7 @@
 ///             B not orthonormal to 1e-5 (InvalidInput).  The handedness of B has no effect.
 /// Source      Romero et al. 2020, eq. (4) and (5)
 /// Departs     continuation of the exponential; expm1 in place of exp - 1
-/// Cost        energy 120 flop + 2 exponentials; stress 250 flop + 1; Hessian 1200 flop + 1; projection: a Cholesky
+/// Cost        energy 120 flop, stress 250 flop, an exponential for both; Hessian 1200 flop + 1; projection: a Cholesky
 ///             factorisation where H is positive definite, else a numeric 9x9 eigen-decomposition
 /// Tests       tests/unit/material/fung_orthotropic_test.cpp
 #pragma once
@@ -160,9 +160,9 @@ public:
         const Scalar dilation = determinant(F, cof) - one;
         const Scalar pressure = coefficients_.lambda * dilation;
         const Scalar dpsi_dsigma = coefficients_.mu * exponential * (one + x.excess);
-        const Matrix3<Scalar> FS = F * (dpsi_dsigma * dsigma_dstrain(Eb));
+        const Matrix3<Scalar> S = dpsi_dsigma * dsigma_dstrain(Eb);
         return {coefficients_.mu * (growth + continued) / coefficients_.eta + pressure * dilation / two,
-                FS + pressure * cof};
+                F * S + pressure * cof};
     }
 
     Matrix9<Scalar> hessian(const Matrix3<Scalar>& F) const {

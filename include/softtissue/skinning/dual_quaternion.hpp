@@ -5,12 +5,12 @@
 /// What        a SkinningPolicy whose blended transforms are rotations plus translations.
 /// Equation    q = sum_j w_j s_j (q_j + eps e_j),  e_j = (0, t_j) q_j / 2;  result: the rigid motion of q / |real(q)|
 ///             s_j = sign(q_j . q_pivot), pivot = the joint of largest weight, the lowest index of several
-/// Shapes      prepared: 8 x joints, column j = (q_j, e_j), each (w, x, y, z).
+/// Shapes      prepared: (8 + joints) x joints, column j = (q_j, e_j, sign(q_j . q_k) for each joint k), quaternions (w, x, y, z).
 /// Valid       rigid joint transforms. The blend takes the shorter way round: as a function of the pose it is
 ///             continuous except where a joint and the pivot differ by exactly pi.
 /// Refuses     a joint transform that is not rigid within rigid_tolerance (InvalidInput names the joint).
 /// Source      Kavan et al. 2008, "Geometric Skinning with Approximate Dual Quaternion Blending", alg. 1
-/// Cost        16 flop per influence, 60 flop and one square root per vertex
+/// Cost        16 flop per influence, 60 flop and one division per vertex
 /// Tests       tests/unit/skinning/dual_quaternion_test.cpp, laws: tests/laws/skinning_laws_test.cpp
 #pragma once
 
@@ -19,8 +19,6 @@
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/linalg/quaternion.hpp>
-
-#include <cmath>
 
 namespace softtissue {
 
@@ -32,46 +30,50 @@ struct DualQuaternion {
     static constexpr RealOf<S> rigid_tolerance = RealOf<S>(1e-4);
 
     void prepare_into(std::span<const AffineTransform<S>> joint_transforms, MatrixX<S>& prepared) const {
-        prepared.resize(8, Index(joint_transforms.size()));
-        for (Index j = 0; j < prepared.cols(); ++j) {
+        const Index num_joints = Index(joint_transforms.size());
+        prepared.resize(8 + num_joints, num_joints);
+        for (Index j = 0; j < num_joints; ++j) {
             const AffineTransform<S>& T = joint_transforms[size_t(j)];
             require(is_rotation(T.linear, rigid_tolerance), "dual quaternion skinning: transform of joint ", j,
                     " is not rigid, expected a rotation and a translation");
             const Quaternion<S> q = quaternion_from_rotation_matrix(T.linear);
             const Quaternion<S> t(S(0), T.translation(0), T.translation(1), T.translation(2));
-            prepared.col(j) << q, S(0.5) * quaternion_product(t, q);
+            prepared.col(j).template head<8>() << q, S(0.5) * quaternion_product(t, q);
+            for (Index k = 0; k <= j; ++k) {
+                const S cosine = prepared.col(j).template head<4>().dot(prepared.col(k).template head<4>());
+                prepared(8 + k, j) = prepared(8 + j, k) = S(value_of(cosine) < 0 ? -1 : 1);
+            }
         }
     }
 
     AffineTransform<S> blend(const MatrixX<S>& prepared, std::span<const JointWeight<RealOf<S>>> row) const {
         using Column = Eigen::Matrix<S, 8, 1>;
-        using std::sqrt;
         SOFTTISSUE_ASSERT(!row.empty());
         JointWeight<RealOf<S>> pivot = row.front();
         for (const JointWeight<RealOf<S>>& entry : row) {
             SOFTTISSUE_ASSERT(entry.joint >= 0 && entry.joint < prepared.cols());
-            if (entry.weight > pivot.weight || (entry.weight == pivot.weight && entry.joint < pivot.joint)) {
-                pivot = entry;
-            }
+            // no branch: which weight is largest is anybody's guess
+            const bool is_pivot = (entry.weight > pivot.weight) |
+                                  ((entry.weight == pivot.weight) & (entry.joint < pivot.joint));
+            pivot.joint = is_pivot ? entry.joint : pivot.joint;
+            pivot.weight = is_pivot ? entry.weight : pivot.weight;
         }
-        const Quaternion<S> pivot_q = prepared.template block<4, 1>(0, pivot.joint);
         Column sum = Column::Zero();
         for (const auto& [joint, weight] : row) {
-            const Eigen::Map<const Column> column(prepared.data() + 8 * Index(joint));
-            const bool flipped = value_of(S(column.template head<4>().dot(pivot_q))) < 0;
-            sum += S(flipped ? -weight : weight) * column;
+            const S* const column = prepared.data() + prepared.rows() * Index(joint);
+            sum += S(weight) * column[8 + pivot.joint] * Eigen::Map<const Column>(column);
         }
         // |real| >= largest weight > 0: every aligned quaternion has a non-negative component along the pivot's
-        sum /= S(sqrt(sum.template head<4>().squaredNorm()));
         return rigid_motion(sum.template head<4>(), sum.template tail<4>());
     }
 
 private:
-    /// Rotation of the unit q, translation = vector part of 2 e conj(q).
+    /// Rotation and translation of (q + eps e) / |q|: R(q / |q|), and the vector part of 2 e conj(q) / |q|^2.
     static AffineTransform<S> rigid_motion(const Quaternion<S>& q, const Quaternion<S>& e) {
-        const Quaternion<S> conjugate(q(0), -q(1), -q(2), -q(3));
-        return {rotation_matrix_from_quaternion(q),
-                S(2) * quaternion_product(e, conjugate).template tail<3>()};
+        const S factor = S(2) / q.squaredNorm();
+        const Quaternion<S> scaled = factor * q;
+        const Quaternion<S> conjugate(scaled(0), -scaled(1), -scaled(2), -scaled(3));
+        return {rotation_matrix_from_scaled_quaternions(q, scaled), quaternion_product(e, conjugate).template tail<3>()};
     }
 };
 
