@@ -32,7 +32,8 @@ foreach(component IN LISTS softtissue_COMPONENTS)
     endif()
 endforeach()
 
-# Examples and benchmarks use all instructions of this machine (SOFTTISSUE_NATIVE), tests those of every machine. With
+# Examples, benchmarks and the unit tests of kernels use all instructions of this machine (SOFTTISSUE_NATIVE), other tests those
+# of every machine. With
 # wider vectors Eigen aligns its types otherwise, hence a program must be of one kind throughout: CMake refuses a target
 # that links both softtissue_for_this_machine and softtissue_for_every_machine.
 include(CheckCXXCompilerFlag)
@@ -43,7 +44,7 @@ if(NOT CMAKE_CROSSCOMPILING)
         set(native_default ON)
     endif()
 endif()
-option(SOFTTISSUE_NATIVE "Compile examples and benchmarks for this machine (-march=native)" ${native_default})
+option(SOFTTISSUE_NATIVE "Compile examples, benchmarks and tests of kernels for this machine (-march=native)" ${native_default})
 
 foreach(machine IN ITEMS this every)
     add_library(softtissue_for_${machine}_machine INTERFACE)
@@ -55,7 +56,7 @@ endforeach()
 if(SOFTTISSUE_NATIVE)
     target_compile_options(softtissue_for_this_machine INTERFACE -march=native)
     # The vector headers of some compilers (g++ 12: AVX-512) earn false warnings; which ones depends on the machine, and no
-    # build stops for them. Tests, which know no machine, keep every warning as an error.
+    # build stops for them. What is compiled for every machine keeps every warning as an error.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         target_compile_options(softtissue_for_this_machine INTERFACE
             -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds)
