@@ -49,6 +49,7 @@
 #include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/random.hpp>
+#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/core/word_pack.hpp>
 #include <softtissue/element/concepts.hpp>
@@ -94,6 +95,8 @@
 #include <softtissue/linalg/rotation_start.hpp>
 #include <softtissue/linalg/svd3.hpp>
 #include <softtissue/linalg/symmetric_eigen.hpp>
+#include <softtissue/linalg/tridiagonal_ql.hpp>
+#include <softtissue/linalg/unit_scale.hpp>
 #include <softtissue/material/arap.hpp>
 #include <softtissue/material/concepts.hpp>
 #include <softtissue/material/corotated_linear.hpp>

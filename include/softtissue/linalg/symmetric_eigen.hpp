@@ -46,8 +46,7 @@ void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Ma
     const Scalar difference = H(q, q) - H(p, p);
     const Scalar twice = H(q, p) + H(q, p);
     const Scalar root = quick_sqrt(Scalar(difference * difference + twice * twice));
-    const Scalar t =
-        select(is_off, Scalar(twice * reciprocal(Scalar(difference + copysign(root, difference)))), zero);
+    const Scalar t = select(is_off, Scalar(twice * reciprocal(Scalar(difference + copysign(root, difference)))), zero);
     const Scalar c = reciprocal_sqrt(Scalar(t * t + one));
     const Scalar s = t * c;
     const auto turn = [&](Scalar& a, Scalar& b) {

@@ -53,8 +53,8 @@ struct DualQuaternion {
         for (const JointWeight<RealOf<S>>& entry : row) {
             SOFTTISSUE_ASSERT(entry.joint >= 0 && entry.joint < prepared.cols());
             // no branch: which weight is largest is anybody's guess
-            const bool is_pivot = (entry.weight > pivot.weight) |
-                                  ((entry.weight == pivot.weight) & (entry.joint < pivot.joint));
+            const bool is_pivot =
+                (entry.weight > pivot.weight) | ((entry.weight == pivot.weight) & (entry.joint < pivot.joint));
             pivot.joint = is_pivot ? entry.joint : pivot.joint;
             pivot.weight = is_pivot ? entry.weight : pivot.weight;
         }
@@ -73,7 +73,8 @@ private:
         const S factor = S(2) / q.squaredNorm();
         const Quaternion<S> scaled = factor * q;
         const Quaternion<S> conjugate(scaled(0), -scaled(1), -scaled(2), -scaled(3));
-        return {rotation_matrix_from_scaled_quaternions(q, scaled), quaternion_product(e, conjugate).template tail<3>()};
+        return {rotation_matrix_from_scaled_quaternions(q, scaled),
+                quaternion_product(e, conjugate).template tail<3>()};
     }
 };
 

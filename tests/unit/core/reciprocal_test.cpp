@@ -50,13 +50,20 @@ TEST_CASE_TEMPLATE("reciprocals and roots are those of division, to the last dig
     });
 }
 
-TEST_CASE_TEMPLATE("zero, subnormal numbers, infinity and NaN are as by division", P,
-                   Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>) {
+TEST_CASE_TEMPLATE("zero, subnormal numbers, infinity and NaN are as by division", P, Pack<float, natural_lanes<float>>,
+                   Pack<double, natural_lanes<double>>) {
     using T = RealOf<P>;
     using Limits = std::numeric_limits<T>;
-    const std::vector<T> numbers = {T(0),          T(-0.0),           Limits::denorm_min(), Limits::min() / 2,
-                                    Limits::min(), Limits::infinity(), Limits::quiet_NaN(),  Limits::max(),
-                                    T(1),          T(4)};
+    const std::vector<T> numbers = {T(0),
+                                    T(-0.0),
+                                    Limits::denorm_min(),
+                                    Limits::min() / 2,
+                                    Limits::min(),
+                                    Limits::infinity(),
+                                    Limits::quiet_NaN(),
+                                    Limits::max(),
+                                    T(1),
+                                    T(4)};
     for_each_pack<P>(numbers, [](const P& x, const auto& number) {
         const P inverse = reciprocal(x), inverse_root = reciprocal_sqrt(x), root = quick_sqrt(x);
         for (int i = 0; i < num_lanes<P>; ++i) {

@@ -57,8 +57,8 @@ TEST_CASE_TEMPLATE("warm starts, near, far and impossible, end at the same rotat
         const Matrix3<S> state = random_state<S>(all_state_classes[size_t(c) % all_state_classes.size()], random);
         F.template middleCols<3>(3 * c) = state;
         const Vector3<S> turn = S(c % 3 == 0 ? 2.5 : 0.05) * random_unit<Vector3<S>>(random);
-        start.row(c) =
-            quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) * polar_rotation(svd3(state)));
+        start.row(c) = quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) *
+                                                          polar_rotation(svd3(state)));
     }
     start.row(17).setZero();
     start.row(18).setConstant(std::numeric_limits<S>::quiet_NaN());

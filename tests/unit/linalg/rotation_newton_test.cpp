@@ -45,7 +45,8 @@ TEST_CASE_TEMPLATE("where it says so, no other rotation is nearer, from any star
         if (refine_rotation(F, q)) {
             ++reached;
             const S distance = (F - rotation_matrix_from_quaternion(q)).norm();
-            CHECK(distance <= (F - polar_rotation(svd3(F))).norm() * (S(1) + S(100) * std::numeric_limits<S>::epsilon()));
+            CHECK(distance <=
+                  (F - polar_rotation(svd3(F))).norm() * (S(1) + S(100) * std::numeric_limits<S>::epsilon()));
         }
     }
     CHECK(reached > 20);

@@ -94,7 +94,7 @@ TEST_CASE_TEMPLATE("matrices of every kind are decomposed", S, float, double) {
 }
 
 TEST_CASE_TEMPLATE("a lane of a pack is what it is alone among others", S, float, double) {
-    constexpr int N = 9, width = natural_lanes<S> > 1 ? natural_lanes<S> : 4;
+    constexpr int N = 9, width = natural_lanes < S >> 1 ? natural_lanes<S> : 4;
     using Lanes = Pack<S, width>;
     RandomGenerator random(3);
     std::vector<Square<S, N>> list = hard_matrices<S, N>(random);

@@ -10,8 +10,8 @@
 
 using namespace softtissue;
 
-TEST_CASE_TEMPLATE("numbers of any size come to at most 1 and back", S, float, double, Pack<float, natural_lanes<float>>,
-                   Pack<double, natural_lanes<double>>) {
+TEST_CASE_TEMPLATE("numbers of any size come to at most 1 and back", S, float, double,
+                   Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>) {
     using T = RealOf<S>;
     using Limits = std::numeric_limits<T>;
     const T tolerance = T(4) * Limits::epsilon();
