@@ -3,12 +3,12 @@
 /// Reciprocals and square roots that need not be rounded correctly: for packs without the divider of the processor.
 ///
 /// What        reciprocal(x) = 1 / x, reciprocal_sqrt(x) = 1 / sqrt(x), quick_sqrt(x) = x / sqrt(x)
-/// Equation    y <- y + y (e + e^2), e = 1 - x y;  y <- y + y e (1/2 + 3/8 e), e = 1 - x y^2: third order, from estimates of 14
-///             bits (AVX-512); elsewhere, and for plain numbers, the quotient
+/// Equation    y + y (e + e^2 + ...), e = 1 - x y;  y + y e (1/2 + 3/8 e + ...), e = 1 - x y^2, as many terms as count, from an
+///             estimate y of 14 bits (AVX-512); elsewhere, and for plain numbers, the quotient
 /// Shapes      float and double, one or several side by side
 /// Valid       every x; zero, infinity and NaN as by division. quick_sqrt: x >= 0 or NaN.
 /// Accuracy    1 ulp, quick_sqrt 2 ulp; a reciprocal below the smallest normal number may be zero
-/// Cost        5 (float) or 9 (double) additions and products, where a root and a division keep the divider busy for the time of 40 to 70
+/// Cost        3 (float) or 8 (double) additions and products, where a root and a division keep the divider busy for the time of 40 to 70
 /// Tests       tests/unit/core/reciprocal_test.cpp
 #pragma once
 
@@ -69,10 +69,12 @@ Pack<T, N> reciprocal(const Pack<T, N>& x) {
         P y;
         y.lanes = detail::reciprocal_estimate(x.lanes);
         const P e = one - x * y;
-        P improved = y + y * (e + e * e);
+        P rest = e;
         if constexpr (std::same_as<T, double>) {
-            improved = improved + improved * (one - x * improved);
+            const P squared = e * e;
+            rest = e + squared + squared * e;
         }
+        const P improved = y + y * rest;
         return select(e * e < one, improved, y);  // estimates of zero and infinity are exact, and e is not a number
     }
 #endif
@@ -89,10 +91,11 @@ Pack<T, N> reciprocal_sqrt(const Pack<T, N>& x) {
         P y;
         y.lanes = detail::reciprocal_sqrt_estimate(x.lanes);
         const P e = one - (x * y) * y;
-        P improved = y + (y * e) * (half + e * T(0.375));
+        P rest = half;
         if constexpr (std::same_as<T, double>) {
-            improved = improved + (improved * half) * (one - (x * improved) * improved);
+            rest = (half + e * T(0.375)) + (e * e) * (P(T(0.3125)) + e * T(0.2734375));
         }
+        const P improved = y + (y * e) * rest;
         return select(e * e < one, improved, y);
     }
 #endif

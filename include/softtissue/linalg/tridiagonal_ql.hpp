@@ -155,7 +155,7 @@ void ql_step(const Mask& is_active, int first, Tridiagonal<Scalar, N>& T, Eigen:
         e(i + 1) = select(is_active, outer, e(i + 1));
         is_inside = is_linked;
         const Scalar rest = d(i + 1) - p;
-        const Scalar r = (d(i) - rest) * s + (c * b + c * b);
+        const Scalar r = (d(i) - rest) * s + c * (b + b);
         p = s * r;
         d(i + 1) = select(is_active, Scalar(rest + p), d(i + 1));
         g = c * r - b;
