@@ -128,6 +128,7 @@
 #include <softtissue/mesh/ray_distance.hpp>
 #include <softtissue/mesh/split_prisms.hpp>
 #include <softtissue/mesh/surface_normals.hpp>
+#include <softtissue/mesh/tet_surface.hpp>
 #include <softtissue/mesh/triangle_boxes.hpp>
 #include <softtissue/mesh/triangle_mesh.hpp>
 #include <softtissue/mesh/umbrella_mean.hpp>

@@ -7,9 +7,9 @@
 /// Rule        A vertex belongs to an extremity if its weights for one group of joints sum to more than weight_threshold.
 ///             Triangles with three remaining vertices are kept, of these the largest piece; triangles with two or more
 ///             boundary edges, and those around a vertex that the boundary passes twice, are dropped until none is left.
-/// Parameters  RegionOptions::extremities: groups of joints; unset = head, wrists + hands, ankles + feet of SMPL's 24 joints;
+/// Parameters  RegionOptions::extremities: groups of joints; unset = head, wrists + hands, ankles + feet of SMPL, SMPL-H or SMPL-X;
 ///             an empty list keeps the whole body. excluded_vertices: body vertices to leave out besides.
-/// Refuses     a body of other than 24 joints without extremities named, a joint or vertex out of range, nothing left.
+/// Refuses     a body of another number of joints without extremities named, a joint or vertex out of range, nothing left.
 /// Source      Romero et al. 2020, section 3.2 (extremities removed).
 /// Tests       tests/unit/anatomy/simulated_region_test.cpp
 #pragma once
@@ -31,9 +31,20 @@ namespace softtissue {
 
 using JointGroups = std::vector<std::vector<std::int32_t>>;
 
-/// Head; ankles and feet; wrists and hands, in SMPL's order of 24 joints.
-inline JointGroups smpl_extremities() {
-    return {{15}, {7, 8, 10, 11}, {20, 21, 22, 23}};
+/// Head; ankles and feet; wrists and hands, in the order of SMPL (24 joints), SMPL-H (52) or SMPL-X (55).
+inline JointGroups smpl_extremities(Index num_joints = 24) {
+    require(
+        num_joints == 24 || num_joints == 52 || num_joints == 55, "simulated region: the body has ", num_joints,
+        " joints, expected SMPL's 24 (SMPL-H: 52, SMPL-X: 55), or the joints of its extremities named in the options");
+    JointGroups groups = {{15}, {7, 8, 10, 11}, {20, 21}};
+    std::int32_t first_of_hands = 22;
+    for (; num_joints == 55 && first_of_hands < 25; ++first_of_hands) {
+        groups[0].push_back(first_of_hands);  // jaw and eyes
+    }
+    for (std::int32_t joint = first_of_hands; joint < num_joints; ++joint) {
+        groups[2].push_back(joint);
+    }
+    return groups;
 }
 
 struct RegionOptions {
@@ -77,9 +88,7 @@ namespace detail {
 
 template <RealScalar S>
 std::vector<bool> vertices_outside_extremities(const SkinningWeights<S>& weights, const RegionOptions& options) {
-    require(options.extremities.has_value() || weights.num_joints() == 24, "simulated region: the body has ",
-            weights.num_joints(), " joints, expected SMPL's 24, or the joints of its extremities named in the options");
-    const JointGroups groups = options.extremities.value_or(smpl_extremities());
+    const JointGroups groups = options.extremities ? *options.extremities : smpl_extremities(weights.num_joints());
     std::vector<bool> kept(size_t(weights.num_vertices()), true);
     for (const std::vector<std::int32_t>& group : groups) {
         std::vector<bool> in_group(size_t(weights.num_joints()), false);

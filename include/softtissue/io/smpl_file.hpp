@@ -11,7 +11,8 @@
 ///             4294967295, -1 or the root itself. Joint j is column j.
 /// Units       metres; see SmplBody.
 /// Refuses     missing arrays, shapes that do not fit, values that are not finite, weights that do not sum to one, a
-///             kinematic tree that is none or does not start in joint 0, a surface that is not closed and manifold (InvalidInput names the file).
+///             kinematic tree that is none or does not start in joint 0; unless SmplSurface::any is asked for, a surface that is
+///             not closed and manifold, as SMPL-X's is not (InvalidInput names the file).
 /// Source      Loper et al. 2015 (SMPL)
 /// Tests       tests/unit/io/smpl_file_test.cpp
 #pragma once
@@ -113,9 +114,12 @@ typename SmplBody<S>::SparseMatrix read_pose_directions(const NpzFile& file, Ind
 
 }  // namespace detail
 
+/// What a body is read for: closed surfaces can hold tissue, any one can be skinned.
+enum class SmplSurface { closed, any };
+
 /// The body in `path`, checked completely.
 template <RealScalar S>
-SmplBody<S> read_smpl_body(const std::filesystem::path& path) {
+SmplBody<S> read_smpl_body(const std::filesystem::path& path, SmplSurface surface = SmplSurface::closed) {
     const NpzFile file = read_npz(path);
     SmplBody<S> body;
     body.template_vertices = file.at("v_template").columns3<S>();
@@ -140,7 +144,9 @@ SmplBody<S> read_smpl_body(const std::filesystem::path& path) {
         body.joint_names = file.at("joint_names").strings();
     }
     body.validate(file.path());
-    validate_closed_surface(body.template_vertices, body.faces, file.path());
+    if (surface == SmplSurface::closed) {
+        validate_closed_surface(body.template_vertices, body.faces, file.path());
+    }
     return body;
 }
 

@@ -36,13 +36,18 @@ public:
             }
         }
         require(root != no_parent, "kinematic tree: every joint has a parent, expected one root (a cycle)");
+        std::vector<std::int32_t> first_child(parents_.size(), no_parent), next_sibling(parents_.size(), no_parent);
+        for (std::int32_t j = count; j-- > 0;) {
+            if (j != root) {
+                next_sibling[size_t(j)] = first_child[size_t(parents_[size_t(j)])];
+                first_child[size_t(parents_[size_t(j)])] = j;
+            }
+        }
         order_.reserve(parents_.size());
         order_.push_back(root);
         for (size_t next = 0; next < order_.size(); ++next) {
-            for (std::int32_t j = 0; j < count; ++j) {
-                if (parents_[size_t(j)] == order_[next]) {
-                    order_.push_back(j);
-                }
+            for (std::int32_t j = first_child[size_t(order_[next])]; j != no_parent; j = next_sibling[size_t(j)]) {
+                order_.push_back(j);
             }
         }
         if (order_.size() != parents_.size()) {

@@ -54,12 +54,30 @@ public:
             }
             require(std::abs(double(sum) - 1.0) <= sum_tolerance, "weights of vertex ", v, " sum to ", sum,
                     ", expected 1");
-            const Scalar rounding = Scalar(entries_.size() - first) * std::numeric_limits<Scalar>::epsilon();
-            if (std::abs(sum - Scalar(1)) > rounding) {
-                for (size_t k = first; k < entries_.size(); ++k) {
-                    entries_[k].weight /= sum;
-                }
+            normalize_from(first, sum);
+            offsets_.push_back(entries_.size());
+        }
+    }
+
+    /// From one row of (joint, weight) per vertex, joints ascending; takes no more memory than the rows.
+    SkinningWeights(Index num_joints, std::span<const std::vector<JointWeight<Scalar>>> rows)
+        : num_joints_(num_joints) {
+        for (size_t v = 0; v < rows.size(); ++v) {
+            Scalar sum(0);
+            std::int32_t last = -1;
+            for (const auto& [joint, weight] : rows[v]) {
+                require(joint > last && joint < num_joints, "weights of vertex ", v, ": joint ", joint, ", expected ",
+                        last + 1, " to ", num_joints - 1);
+                require(std::isfinite(weight) && weight > Scalar(0), "weights[", v, ", ", joint, "] = ", weight,
+                        ", expected a finite value > 0");
+                last = joint;
+                sum += weight;
             }
+            require(std::abs(double(sum) - 1.0) <= sum_tolerance, "weights of vertex ", v, " sum to ", sum,
+                    ", expected 1");
+            const size_t first = entries_.size();
+            entries_.insert(entries_.end(), rows[v].begin(), rows[v].end());
+            normalize_from(first, sum);
             offsets_.push_back(entries_.size());
         }
     }
@@ -84,6 +102,16 @@ public:
     }
 
 private:
+    /// Divides the entries from `first` on by their sum unless that is one within rounding.
+    void normalize_from(size_t first, Scalar sum) {
+        const Scalar rounding = Scalar(entries_.size() - first) * std::numeric_limits<Scalar>::epsilon();
+        if (std::abs(sum - Scalar(1)) > rounding) {
+            for (size_t k = first; k < entries_.size(); ++k) {
+                entries_[k].weight /= sum;
+            }
+        }
+    }
+
     Index num_joints_ = 0;
     std::vector<size_t> offsets_{0};
     std::vector<JointWeight<Scalar>> entries_;

@@ -104,15 +104,28 @@ TEST_CASE("what cannot be cut is refused") {
     const auto make = [&](const RegionOptions& options) {
         return make_simulated_region(body.positions, mesh, body.weights, options).num_vertices();
     };
-    CHECK_THROWS_WITH_AS(
-        make({}),
-        "simulated region: the body has 3 joints, expected SMPL's 24, or the joints of its extremities "
-        "named in the options",
-        InvalidInput);
+    CHECK_THROWS_WITH_AS(make({}),
+                         "simulated region: the body has 3 joints, expected SMPL's 24 (SMPL-H: 52, SMPL-X: 55), or the "
+                         "joints of its extremities "
+                         "named in the options",
+                         InvalidInput);
     CHECK_THROWS_WITH_AS(make({.extremities = JointGroups{{1, 3}}}),
                          "simulated region: extremity joint 3, expected 0 to 2", InvalidInput);
     CHECK_THROWS_WITH_AS(make({.extremities = JointGroups{}, .excluded_vertices = {-1}}),
                          "simulated region: excluded vertex -1, expected 0 to 497", InvalidInput);
     CHECK_THROWS_WITH_AS(make({.extremities = JointGroups{{0, 1, 2}}}),
                          "simulated region: no triangle left, expected skin outside the extremities", InvalidInput);
+}
+
+TEST_CASE("fingers, jaw and eyes of SMPL's relatives belong to their extremities") {
+    CHECK(smpl_extremities() == JointGroups{{15}, {7, 8, 10, 11}, {20, 21, 22, 23}});
+    const JointGroups hands = smpl_extremities(52);
+    CHECK(hands[0] == std::vector<std::int32_t>{15});
+    CHECK(hands[2].size() == 32);
+    CHECK(hands[2].back() == 51);
+    const JointGroups expressive = smpl_extremities(55);
+    CHECK(expressive[0] == std::vector<std::int32_t>{15, 22, 23, 24});
+    CHECK(expressive[2].size() == 32);
+    CHECK(expressive[2][2] == 25);
+    CHECK(expressive[2].back() == 54);
 }

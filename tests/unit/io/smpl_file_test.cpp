@@ -220,6 +220,35 @@ TEST_CASE("a surface that is not closed and manifold, or degenerate, is refused"
     CHECK(refused_with("v_template", array(flat, {n, 3})).size() > 0);
 }
 
+TEST_CASE("a surface with an opening is read where it need not be closed") {
+    const TemporaryFolder folder;
+    NpyArrays arrays = sample_arrays();
+    arrays["f"] = array(std::vector<std::int32_t>(faces.begin(), faces.end() - 3), {7, 3});
+    CHECK(contains(refused(arrays), "expected a closed surface"));
+    write_npz(folder / "body.npz", arrays);
+    CHECK(read_smpl_body<double>(folder / "body.npz", SmplSurface::any).faces.cols() == 7);
+    arrays["f"] = array(std::vector<std::int32_t>{0, 2, 6}, {1, 3});
+    write_npz(folder / "body.npz", arrays);
+    CHECK(contains(refusal([&] { static_cast<void>(read_smpl_body<double>(folder / "body.npz", SmplSurface::any)); }),
+                   "f[0, 2] = 6"));
+}
+
+TEST_CASE("what smplx's files hold besides is left alone: hands, landmarks, texture, pickled objects") {
+    NpyArrays arrays = sample_arrays();
+    arrays["kintree_table"] = array(std::vector<std::int64_t>{4294967295, 0, 1, 0, 1, 2}, {2, joints});
+    arrays["f"] = array(std::vector<std::uint32_t>(faces.begin(), faces.end()), {8, 3});
+    arrays["hands_meanl"] = array(std::vector<float>(45, 0.1F), {45});
+    arrays["lmk_faces_idx"] = array(std::vector<std::int64_t>{1, 2}, {2});
+    arrays["vt"] = array(std::vector<double>{0.0, 1.0}, {1, 2});
+    arrays["bs_style"] = NpyArray::from_strings({"lbs"}, {});
+    arrays["joint2num"] =
+        NpyArray("body.npz: array 'joint2num'",
+                 as_bytes(npy_image("{'descr': '|O', 'fortran_order': False, 'shape': ()}", "\x80\x04K\x01.")));
+    const SmplBody<double> body = body_of(arrays);
+    CHECK(body.faces == body_of(sample_arrays()).faces);
+    CHECK(body.tree.parents() == std::vector<std::int32_t>{-1, 0, 1});
+}
+
 TEST_CASE("a body that does not fit together is not written") {
     const TemporaryFolder folder;
     SmplBody<double> body = body_of(sample_arrays());
