@@ -11,11 +11,13 @@
 #include <cassert>
 
 #ifndef SOFTTISSUE_ASSERT
+/// A caller's mistake inside a kernel.
 #define SOFTTISSUE_ASSERT(condition) assert(condition)
 #endif
 
 #ifndef SOFTTISSUE_THROW
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+/// The one way an exception leaves the library.
 #define SOFTTISSUE_THROW(type, text) throw type(text)
 #else
 #error "softtissue: exceptions are off; define SOFTTISSUE_THROW(type, text) to something that does not return"

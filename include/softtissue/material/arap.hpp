@@ -35,6 +35,7 @@ class Arap {
 public:
     using Scalar = ScalarType;
 
+    /// The coefficient of the energy, see the file comment.
     struct Parameters {
         Scalar stiffness = Scalar(1);  ///< [Pa]
     };

@@ -100,6 +100,7 @@ protected:
         return body_.within_bone(o, o + part * chest_radius(t, angle) * trunk_.direction(angle), 2 * mm_);
     }
 
+    /// One arc of a plate: where it lies along the chest and around it, and how far it reaches.
     struct PlateRow {
         double t, angle, half_width, part, half_thickness;
     };

@@ -26,11 +26,13 @@ namespace softtissue {
 
 /// Angles about x (lean forwards), y (turn to the left) and z (tip to the right), applied as R_y R_x R_z.
 struct HumanStance {
+    /// Angles [rad] of one arm.
     struct Arm {
         double lower = 0.0;  // from the rest pose down towards the flank
         double swing = 0.0;  // forwards
         double elbow = 0.0;  // bend
     };
+    /// Place and angles [rad] of one foot.
     struct Foot {
         Vector3<double> ball = Vector3<double>::Zero();  // displacement of the ball of the foot
         double pitch = 0.0;                              // heel up

@@ -36,12 +36,14 @@ struct BFloat16Weights {
     }
     static double value(std::uint32_t code, float) { return double(std::bit_cast<float>(code << 16)); }
 
+    /// The weights of one word of every row, in float.
     struct Block {
         Floats first, second;
         [[gnu::always_inline]] explicit Block(const WordPack& words)
             : first(words.shifted_left(16).as_floats()), second(words.masked(0xffff0000U).as_floats()) {}
     };
 
+    /// Products summed so far, those of the lower and of the upper halves of the words.
     struct Sums {
         Floats first = 0.0F, second = 0.0F;
 

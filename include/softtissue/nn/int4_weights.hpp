@@ -48,12 +48,14 @@ struct Int4Weights {
     }
     static double value(std::uint32_t code, float step) { return (double(code & 15U) - 8) * double(step); }
 
+    /// The weights of one word of every row: the lower and the upper digits of its bytes.
     struct Block {
         WordPack lower, upper;
         [[gnu::always_inline]] explicit Block(const WordPack& words)
             : lower(words.masked(0x0f0f0f0fU)), upper(words.shifted_right(4).masked(0x0f0f0f0fU)) {}
     };
 
+    /// Products summed so far, in integers.
     struct Sums : detail::DigitSums<8> {
         [[gnu::always_inline]] void add(const Block& weights, const std::int32_t* digits) {
             DigitSums::add(weights.lower, digits);

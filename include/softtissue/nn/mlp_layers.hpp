@@ -50,6 +50,7 @@ public:
 
     /// What forward_into() keeps for backward_into().
     struct Tape {
+        /// Of one hidden layer.
         struct Hidden {
             MatrixX<S> normalized, slopes, outputs, gradients;
             VectorX<S> inverse_deviations;

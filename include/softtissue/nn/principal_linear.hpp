@@ -43,6 +43,7 @@ public:
     using Scalar = S;
     using WeightMatrix = typename Linear<S>::WeightMatrix;
 
+    /// What a product writes on its way, reused from one to the next.
     struct Scratch {
         MatrixX<S> z;
         DigitColumns leading, others;

@@ -12,7 +12,7 @@
 
 namespace softtissue {
 
-/// Satisfies SparseCholesky<S>.
+/// Satisfies the concept SparseCholesky.
 template <RealScalar S>
 using DefaultCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<S>, Eigen::Lower>;
 
