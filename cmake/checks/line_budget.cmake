@@ -1,5 +1,5 @@
-# Compares the number of lines of every Eigen-only header after preprocessing with the budget, and fails where one
-# exceeds it by more than 2 %. With -D UPDATE=ON it writes the budget instead.
+# Compares the number of lines of every Eigen-only header after preprocessing with the budget, and those of a few sources as users
+# write them, and fails where one exceeds it by more than 2 %. With -D UPDATE=ON it writes the budget instead.
 #   cmake -D INCLUDE_DIR=<include> -D CXX=<g++> -D EIGEN_INCLUDE_DIR=<dir> -D BUDGET=<file> -D TOOLS=<text>
 #         [-D UPDATE=ON] -P line_budget.cmake
 # TOOLS names compiler and Eigen: line counts compare between equal tools only.
@@ -9,6 +9,9 @@ include("${CMAKE_CURRENT_LIST_DIR}/findings.cmake")
 
 softtissue_list_headers(headers "${INCLUDE_DIR}")
 softtissue_split_headers(headers headers optional "${INCLUDE_DIR}")
+# A first law, a material of one's own, an avatar, everything; relative to the include folder.
+list(APPEND headers ../examples/stretch_one_cell.cpp ../examples/swap_material.cpp ../tests/docs/avatar.cpp
+     ../tests/consumer/main.cpp)
 
 set(new_budget "# Lines after preprocessing with ${TOOLS}\n")
 foreach(header IN LISTS headers)

@@ -14,7 +14,7 @@ function(expect check text)
     endwhile()
     execute_process(
         COMMAND "${CMAKE_COMMAND}" "-DROOT=${WORK_DIR}" "-DINCLUDE_DIR=${WORK_DIR}/include"
-                -P "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${check}.cmake"
+                -DPAGES=page.md -P "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${check}.cmake"
         RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
     string(FIND "${output}" "${text}" position)
     if(result EQUAL 0 OR position EQUAL -1)
@@ -47,5 +47,15 @@ expect(umbrella "softtissue.hpp lacks softtissue/core/a.hpp" core/a.hpp "${good}
 expect(umbrella "softtissue.hpp should not include softtissue/core/b.hpp" core/a.hpp "${good}#include <softtissue/core/b.hpp>"
     core/b.hpp "${good}#if !__has_include(<zip.h>)\n#endif"
     softtissue.hpp "${good}#include <softtissue/core/b.hpp>")
+
+# Pages, above the include folder.
+expect(doc_blocks "neither a program with its output nor a fragment" ../../page.md "```cpp\nint x = 1\n```\n\nText.\n\n```text\n1\n```")
+expect(doc_blocks "this is not in core.cpp" ../../page.md "<!-- from core.cpp -->\n```cpp\nint y\n```" ../../core.cpp "int x")
+expect(doc_blocks "this is not in core.cpp" ../../page.md "<!-- from core.cpp -->\n```cpp\nint y\n// ...\nint x\n```"
+    ../../core.cpp "int x, z, int y")
+expect(doc_blocks "a fragment of gone.cpp" ../../page.md "<!-- from gone.cpp -->\n```cpp\nint y\n```")
+expect(doc_blocks "no program gone" ../../page.md "```sh\ncmake --build build && build/gone --out x  # a remark\n```")
+expect(doc_blocks "no script gone.sh" ../../page.md "```sh\nsh gone.sh\n```")
+expect(doc_blocks "a link to gone.md" ../../page.md "```sh\ncd x\n```\n[Gone](gone.md)")
 
 file(REMOVE_RECURSE "${WORK_DIR}")
