@@ -36,6 +36,7 @@
 #include <softtissue/avatar/tissue_model.hpp>
 #include <softtissue/core/branchless_exp.hpp>
 #include <softtissue/core/byte_hash.hpp>
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/dual.hpp>
 #include <softtissue/core/error.hpp>
@@ -51,6 +52,7 @@
 #include <softtissue/core/random.hpp>
 #include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/core/version.hpp>
 #include <softtissue/core/word_pack.hpp>
 #include <softtissue/element/concepts.hpp>
 #include <softtissue/element/prism6.hpp>

@@ -4,11 +4,12 @@
 ///
 /// What        numbers the free vertices 0 .. num_free - 1 in mesh order; matrices and right-hand sides exist for those only.
 /// Shapes      full arrays 3 x num_vertices, free vectors 3 num_free (dof 3 * free vertex + component).
-/// Refuses     a vertex out of range or named twice (InvalidInput names it).
+/// Refuses     a vertex out of range or named twice (InvalidInput names it), more vertices than 32-bit indices can number.
 /// Source      Romero et al. 2020, eq. (3), the matrix C_B.
 /// Tests       tests/unit/energy/prescribed_vertices_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 
@@ -23,7 +24,7 @@ public:
     static constexpr std::int32_t prescribed = -1;
 
     PrescribedVertices(Index num_vertices, std::span<const std::int32_t> vertices)
-        : free_index_(size_t(num_vertices), 0) {
+        : free_index_(size_t(checked_index(num_vertices, "prescribed vertices: vertices of the mesh")), 0) {
         for (const std::int32_t v : vertices) {
             require(v >= 0 && v < num_vertices, "prescribed vertex ", v, ", expected 0 to ", num_vertices - 1);
             require(free_index_[size_t(v)] != prescribed, "prescribed vertex ", v, " is named twice");

@@ -11,6 +11,7 @@
 /// Tests       tests/unit/energy/stencil_assembly_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
@@ -40,6 +41,7 @@ public:
         : stencils_(std::move(stencils)),
           energy_slots_(padded(stencils_.cols())),
           gradient_slots_(3, num_nodes * padded(stencils_.cols())) {
+        checked_index(num_nodes * num_stencils(), "energy: nodes of all its cells");
         incidence_offsets_.assign(size_t(num_vertices) + 1, 0);
         for (Index s = 0; s < num_stencils(); ++s) {
             for (int a = 0; a < num_nodes; ++a) {

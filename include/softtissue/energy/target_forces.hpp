@@ -12,6 +12,7 @@
 /// Tests       tests/unit/energy/target_forces_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -37,6 +38,7 @@ public:
     TargetForces(const RestOperators<ElementType, Scalar>& rest, const Connectivity<ElementType::num_nodes>& cells,
                  const Eigen::SparseMatrix<double>& K, const PrescribedVertices& prescribed) {
         constexpr int num_nodes = ElementType::num_nodes;
+        checked_index(cells.cols(), "target forces: cells");
         std::vector<std::size_t> first(size_t(prescribed.num_free()) + 1, 0);
         const auto for_each_free_node = [&](const auto& f) {
             for (Index c = 0; c < cells.cols(); ++c) {

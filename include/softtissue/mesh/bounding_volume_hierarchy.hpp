@@ -15,6 +15,7 @@
 /// Tests       tests/unit/mesh/bounding_volume_hierarchy_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -50,6 +51,7 @@ public:
         bool is_leaf() const { return end - begin <= leaf_size; }
     };
 
+    /// The item nearest to a point.
     struct Nearest {
         std::int32_t item;  ///< no_item if there is none
         S squared_distance;
@@ -162,6 +164,7 @@ private:
     };
 
     static void check(const std::vector<Box<S>>& boxes) {
+        checked_index(2 * Index(boxes.size()), "hierarchy: nodes");
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const Box<S>& box = boxes[i];
             require(box.min().allFinite() && box.max().allFinite() && !box.isEmpty(), "hierarchy: box ", i,

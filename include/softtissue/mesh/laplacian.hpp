@@ -17,6 +17,7 @@
 /// Tests       tests/unit/mesh/laplacian_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -80,7 +81,8 @@ template <RealScalar Scalar, int num_nodes, class LocalMatrix>
 Eigen::SparseMatrix<Scalar> assemble_scalar(Index num_vertices, const Connectivity<num_nodes>& cells,
                                             const LocalMatrix& local_matrix) {
     std::vector<Eigen::Triplet<Scalar>> entries;
-    entries.reserve(size_t(num_nodes * num_nodes * cells.cols()));
+    entries.reserve(
+        size_t(checked_index(num_nodes * num_nodes * cells.cols(), "Laplacian: entries before they are summed")));
     for (Index c = 0; c < cells.cols(); ++c) {
         const Eigen::Matrix<Scalar, num_nodes, num_nodes> local = local_matrix(c);
         for (int j = 0; j < num_nodes; ++j) {

@@ -11,6 +11,7 @@
 /// Tests       tests/unit/mesh/prism_layers_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
 
@@ -30,6 +31,8 @@ struct PrismLayers {
 
     /// The prisms over `triangles` (of columns), 6 x (num_layers m).
     Connectivity<6> prisms(const Triangles& triangles) const {
+        checked_index(num_vertices(), "prism layers: vertices");
+        checked_index(triangles.cols() * num_layers, "prism layers: prisms");
         Connectivity<6> cells(6, triangles.cols() * num_layers);
         for (Index t = 0; t < triangles.cols(); ++t) {
             for (Index layer = 0; layer < num_layers; ++layer) {

@@ -11,6 +11,7 @@
 /// Tests       tests/unit/mesh/triangle_mesh_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/mesh/adjacency.hpp>
@@ -29,6 +30,7 @@ class TriangleMesh {
 public:
     static constexpr std::int32_t no_triangle = -1;
 
+    /// Two vertices and the triangles on both sides.
     struct Edge {
         /// In the direction in which triangles[0] runs through it.
         std::array<std::int32_t, 2> vertices;
@@ -40,7 +42,8 @@ public:
 
     /// `source` (a file or surface name) starts the message of a refusal.
     TriangleMesh(Triangles triangles, Index num_vertices, const std::string& source = "surface")
-        : triangles_(std::move(triangles)), num_vertices_(num_vertices) {
+        : triangles_(std::move(triangles)), num_vertices_(checked_index(num_vertices, source, ": vertices")) {
+        checked_index(3 * num_triangles(), source, ": corners of triangles");
         check_indices(source);
         build_edges(source);
         build_adjacency();

@@ -17,6 +17,7 @@
 /// Tests       tests/unit/solver/poisson_reconstruction_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
@@ -150,7 +151,8 @@ private:
     static Eigen::SparseMatrix<double> normal_matrix(const Mesh& mesh, const Rest& rest) {
         using NodeMatrix = Eigen::Matrix<double, num_nodes, num_nodes>;
         std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(size_t(num_nodes * num_nodes * mesh.num_cells()));
+        entries.reserve(size_t(checked_index(num_nodes * num_nodes * mesh.num_cells(),
+                                             "Poisson reconstruction: entries before they are summed")));
         for (Index c = 0; c < mesh.num_cells(); ++c) {
             const Eigen::Matrix<double, 3, num_nodes> g = rest.cell_gradients(c).template cast<double>();
             const NodeMatrix K = double(rest.volumes(c)) * g.transpose() * g;

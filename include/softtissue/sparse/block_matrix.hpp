@@ -9,6 +9,7 @@
 /// Tests       tests/unit/sparse/block_matrix_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -27,6 +28,7 @@ public:
     BlockMatrix() = default;
 
     explicit BlockMatrix(const BlockPattern& pattern) : pattern_(pattern) {
+        require_size(pattern.num_columns(), pattern.num_blocks());
         const Index n = 3 * pattern.num_columns();
         matrix_.resize(n, n);
         matrix_.resizeNonZeros(9 * pattern.num_blocks());
@@ -46,6 +48,12 @@ public:
         }
         outer[n] = static_cast<int>(9 * pattern.num_blocks());
         set_zero();
+    }
+
+    /// Refuses what 32-bit indices cannot number: above 715 million vertices or 238 million blocks.
+    static void require_size(Index num_columns, Index num_blocks) {
+        checked_index(3 * num_columns, "block matrix: rows");
+        checked_index(9 * num_blocks, "block matrix: entries");
     }
 
     const BlockPattern& pattern() const { return pattern_; }

@@ -7,6 +7,7 @@
 /// Tests       tests/unit/sparse/block_pattern_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/notation.hpp>
 
@@ -23,6 +24,7 @@ public:
 
     /// `neighbours[j]` are the rows of column j in any order, repetitions allowed; the diagonal is always added.
     explicit BlockPattern(std::vector<std::vector<std::int32_t>> neighbours) {
+        checked_index(Index(neighbours.size()), "block pattern: columns");
         offsets_.reserve(neighbours.size() + 1);
         for (size_t j = 0; j < neighbours.size(); ++j) {
             std::vector<std::int32_t>& column = neighbours[j];

@@ -15,6 +15,7 @@
 /// Tests       tests/unit/sparse/cholesky_factor_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
@@ -161,6 +162,7 @@ private:
             node_size_ = 1;
             num_top_ = place_part(num_parts, 0);
         }
+        checked_index(2 * (n + num_parts * num_top_), "Cholesky factor: places of unknowns");
         std::int32_t next = 0;
         for (Index part = 0; part < num_parts; ++part) {
             next = place_part(part, next);

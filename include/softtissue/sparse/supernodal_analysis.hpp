@@ -11,6 +11,7 @@
 /// Tests       tests/unit/sparse/supernodal_analysis_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/sparse/minimum_degree_order.hpp>
@@ -135,6 +136,7 @@ private:
                 }
             }
             front.height = front.width + Index(rows_.size()) - front.rows;
+            checked_index(front.height * front.width, "sparse Cholesky: numbers of a front");
             front.panel = num_values_;
             num_values_ += front.height * front.width;
             largest_height_ = std::max(largest_height_, front.height);
