@@ -1,4 +1,4 @@
-// Under -ffinite-math-only the solvers' NaN checks would vanish.
-// expect: solvers detect NaN
+// Under -ffinite-math-only the checks for NaN would vanish, those of a mesh as those of a solver.
+// expect: input and solvers are checked for NaN
 // flags: -ffast-math
-#include <softtissue/solver/newton.hpp>
+#include <softtissue/mesh/cell_mesh.hpp>

@@ -12,6 +12,10 @@
 /// Tests       tests/unit/core/thread_executor_test.cpp
 #pragma once
 
+#if !defined(__cpp_exceptions) && !defined(_CPPUNWIND)
+#error "softtissue: core/thread_executor.hpp needs exceptions; without them, leave it out"
+#endif
+
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 

@@ -12,6 +12,10 @@
 /// Tests       tests/unit/io/dataset_generation_test.cpp, tests/scenario/dataset_generation_test.cpp
 #pragma once
 
+#if !defined(__cpp_exceptions) && !defined(_CPPUNWIND)
+#error "softtissue: io/dataset_generation.hpp needs exceptions; without them, leave it out"
+#endif
+
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/thread_executor.hpp>

@@ -17,6 +17,10 @@
 /// Tests       tests/unit/io/safetensors_test.cpp
 #pragma once
 
+#if !defined(__cpp_exceptions) && !defined(_CPPUNWIND)
+#error "softtissue: io/safetensors.hpp needs exceptions; without them, leave it out"
+#endif
+
 #if !__has_include(<nlohmann/json.hpp>)
 #error "softtissue: io/safetensors.hpp needs nlohmann-json (Debian: nlohmann-json3-dev)"
 #endif

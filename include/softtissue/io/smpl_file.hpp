@@ -17,6 +17,10 @@
 /// Tests       tests/unit/io/smpl_file_test.cpp
 #pragma once
 
+#if !defined(__cpp_exceptions) && !defined(_CPPUNWIND)
+#error "softtissue: io/smpl_file.hpp needs exceptions; without them, leave it out"
+#endif
+
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>

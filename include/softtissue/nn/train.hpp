@@ -31,11 +31,6 @@
 #include <span>
 #include <vector>
 
-#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ && !defined(SOFTTISSUE_ALLOW_FINITE_MATH)
-#error \
-    "softtissue: training detects NaN; compile without -ffast-math/-ffinite-math-only or define SOFTTISSUE_ALLOW_FINITE_MATH"
-#endif
-
 namespace softtissue {
 
 /// loss_and_gradient: the mean loss over the given training samples; overwrites the gradient. Equal arguments give equal

@@ -13,12 +13,12 @@
 ///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
 ///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
 /// Cost        no allocation after the first iteration
-/// Refuses     nothing: outcomes are in the SolveReport. Under -ffinite-math-only NaN checks vanish: a compile error.
+/// Refuses     nothing: outcomes are in the SolveReport.
 /// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter), 2024b (adaptive filter); Nolte et al. 2026, sec. 3.2
 /// Tests       tests/unit/solver/newton_test.cpp, tests/scenario/static_solve_test.cpp
 #pragma once
 
-#include <softtissue/core/config.hpp>
+#include <softtissue/core/config.hpp>  // refuses -ffinite-math-only
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
@@ -29,11 +29,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ && !defined(SOFTTISSUE_ALLOW_FINITE_MATH)
-#error \
-    "softtissue: solvers detect NaN; compile without -ffast-math/-ffinite-math-only or define SOFTTISSUE_ALLOW_FINITE_MATH"
-#endif
 
 namespace softtissue {
 
