@@ -46,7 +46,7 @@ endfunction()
 function(softtissue_is_program result prefix i)
     math(EXPR next "${i} + 1")
     set(${result} FALSE PARENT_SCOPE)
-    if("${${prefix}_${i}_LANGUAGE}" STREQUAL "cpp" AND "${${prefix}_${next}_LANGUAGE}" STREQUAL "text"
+    if(next LESS_EQUAL ${prefix}_COUNT AND "${${prefix}_${i}_LANGUAGE}" STREQUAL "cpp" AND "${${prefix}_${next}_LANGUAGE}" STREQUAL "text"
        AND "${${prefix}_${next}_BEFORE}" MATCHES "^[ \n]*$")
         set(${result} TRUE PARENT_SCOPE)
     endif()

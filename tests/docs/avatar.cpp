@@ -14,7 +14,7 @@
 
 using namespace softtissue;
 
-std::vector<Matrix3X<double>> soft_tissue(const SmplBody<double>& body, const Motion<double>& recorded);
+template <class>
 std::vector<Matrix3X<double>> soft_tissue(const SmplBody<double>& body, const Motion<double>& recorded) {
     // Once: a layer below the skin, skinned as the skin is.
     const VolumetricSmpl<double> skin(body);

@@ -12,8 +12,7 @@
 
 using namespace softtissue;
 
-void animate(const SmplBody<double>& body, const Matrix3X<double>& joints, const Pose<double>& pose,
-             Matrix3X<double>& x);
+template <class>
 void animate(const SmplBody<double>& body, const Matrix3X<double>& joints, const Pose<double>& pose,
              Matrix3X<double>& x) {
     const SequentialExecutor executor;
@@ -28,8 +27,7 @@ void animate(const SmplBody<double>& body, const Matrix3X<double>& joints, const
     animation.pose_into(pose, joint_transforms(body.tree, joints, pose), x);
 }
 
-void animate_small(const NeuralModel<float>& model, const LayeredBody<double>& layered, const SmplBody<double>& body,
-                   const std::vector<Pose<double>>& poses, PoissonReconstruction<Prism6, double>& poisson);
+template <class>
 void animate_small(const NeuralModel<float>& model, const LayeredBody<double>& layered, const SmplBody<double>& body,
                    const std::vector<Pose<double>>& poses, PoissonReconstruction<Prism6, double>& poisson) {
     const SequentialExecutor executor;
