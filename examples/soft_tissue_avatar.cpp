@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ctest: --frames 40 --out soft_tissue_avatar_test
+// ctest: --body @EXAMPLES@/soft_tissue_avatar/limb.gltf --frames 30 --vtu --usd --out character_test
 //
 // A skinned body in motion with simulated soft tissue: Romero et al. 2020, from the body to pictures.
 #include "soft_tissue_avatar/scene.hpp"
@@ -18,6 +19,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -33,15 +35,26 @@ Model make_skin(const Settings& settings, const SmplBody<Scalar>& body) {
 }
 
 Scene make_scene(const Settings& settings) {
-    SmplBody<Scalar> body = read_human(settings.body);
-    const Motion<Scalar> recorded = read_human_motion(settings.motion, body.num_joints());
+    SmplBody<Scalar> body;
+    Motion<Scalar> recorded;
+    SoftLayerOptions<Scalar> options;
+    if (is_character_file(settings.body)) {
+        require(settings.motion.empty(), "--motion: ", settings.motion, ", but ", settings.body, " moves by its own clips (--clip)");
+        CharacterScene character = read_character(settings.body, settings.character);
+        body = std::move(character.body);
+        recorded = std::move(character.motion);
+        options.region.extremities = std::move(character.extremities);
+    } else {
+        body = read_human(settings.body);
+        recorded = read_human_motion(settings.motion, body.num_joints());
+    }
     Motion<Scalar> motion = resample(recorded, 1.0 / settings.time_step);
     if (settings.frames > 0 && settings.frames < motion.num_frames()) {
         motion.poses.resize(size_t(settings.frames));
     }
     require(motion.num_frames() >= 2, "motion: ", motion.num_frames(), " frames at the time step, expected at least 2");
     Model skin = make_skin(settings, body);
-    SoftLayer<Scalar> layer = make_soft_layer(body);
+    SoftLayer<Scalar> layer = make_soft_layer(body, options);
     Model tissue = make_tissue_model(skin, layer);
     return {std::move(body), std::move(motion), std::move(skin), std::move(layer), std::move(tissue)};
 }
@@ -77,8 +90,12 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App app("Soft tissue on a skinned body in motion. Without arguments: the embedded body and motion, with the settings "
                  "of Romero et al. 2020.");
-    app.add_option("--body", settings.body, "body in SMPL's layout (.npz)");
+    app.add_option("--body", settings.body, "body in SMPL's layout (.npz), or a rigged character with its clips (.glb, .gltf)");
     app.add_option("--motion", settings.motion, "motion in AMASS's layout (.npz)");
+    app.add_option("--mesh", settings.character.mesh, "skinned mesh of a character that has several");
+    app.add_option("--clip", settings.character.clip, "animation of a character (default: its first)");
+    app.add_option("--joints", settings.character.joints,
+                   "SMPL's names for joints of a character (.json): head, hands and feet are then not simulated");
     app.add_option("--frames", settings.frames, "at most so many time steps")->check(CLI::PositiveNumber);
     app.add_option("--material", settings.material, "law of the tissue")
         ->check(CLI::IsMember({"fung", "snh", "corotated", "arap"}))->capture_default_str();
@@ -93,6 +110,7 @@ int main(int argc, char** argv) {
     app.add_option("--out", settings.out, "folder for results")->capture_default_str();
     app.add_option("--json", settings.json, "file for figures (default: OUT/results.json)");
     app.add_flag("--vtu", settings.vtu, "also write the mesh of every frame for ParaView");
+    app.add_flag("--usd", settings.usd, "also write tissue, skin and skeleton of every frame as OpenUSD text");
     CLI11_PARSE(app, argc, argv);
     try {
         return run_program(settings);

@@ -31,7 +31,7 @@ inline Body read_body(const std::string& path) {
     if (path.empty()) {
         return {{human_joint_names(), KinematicTree(human_parents()), human_rest_joints()}};
     }
-    const SmplBody<double> body = read_smpl_body<double>(path);
+    const SmplBody<double> body = read_smpl_body<double>(path, SmplSurface::any);
     const auto names = body.joint_names.empty() ? smpl_joint_names() : body.joint_names;
     return {{names, body.tree, body.template_vertices * body.joint_regressor.transpose()},
             body.template_vertices.row(1).minCoeff()};

@@ -5,6 +5,7 @@
 
 #include "../support/any_material.hpp"
 #include "../support/progress.hpp"
+#include "../support/usd_output.hpp"
 #include "scene.hpp"
 
 #include <softtissue/anatomy/orthotropy_basis.hpp>
@@ -17,6 +18,8 @@
 #include <algorithm>
 #include <concepts>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace examples {
@@ -87,6 +90,10 @@ void simulate(const Settings& settings, const Scene& scene, const ThreadExecutor
     results.seconds_setup += seconds() - begin;
 
     AvatarOutput output(settings.out, scene.body, scene.layer, 1.0 / settings.time_step, settings.vtu);
+    std::optional<UsdOutput> usd;
+    if (settings.usd) {
+        usd.emplace(scene.body, scene.layer, scene.skin.rest_joints(), 1.0 / settings.time_step);
+    }
     const std::vector<Pose<Scalar>>& poses = scene.motion.poses;
     avatar.start(poses[0], poses[1]);
     PosedBody<Scalar> skin;
@@ -104,10 +111,16 @@ void simulate(const Settings& settings, const Scene& scene, const ThreadExecutor
         if (settings.vtu) {
             output.add_vtu(avatar.positions(), avatar.skinned(), mesh.cells);
         }
+        if (usd) {
+            usd->add_frame(skin.positions, avatar.positions(), poses[k]);
+        }
         progress.update(int(k) - 1);
     }
     results.interrupted = is_interrupted();
     output.write();
+    if (usd && results.steps.count > 0) {
+        usd->write(std::filesystem::path(settings.out) / "soft_tissue.usda");
+    }
     results.pictures = output.files();
     results.largest_displacement = output.largest_displacement();
 }

@@ -5,6 +5,7 @@
 
 #include "../support/any_skinning.hpp"
 #include "../support/avatar_output.hpp"
+#include "../support/character_file.hpp"
 
 #include <softtissue/anatomy/soft_layer.hpp>
 #include <softtissue/core/thread_executor.hpp>
@@ -24,12 +25,13 @@ using Model = softtissue::VolumetricSmpl<Scalar, Skinning>;
 
 struct Settings {
     std::string body, motion;
+    CharacterChoice character;
     int frames = 0;
     std::string material = "fung", skinning = "smpl", frame = "unposed", element = "tet";
     double time_step = 1.0 / 120.0;
     int threads = int(std::max(1U, std::thread::hardware_concurrency()));
     std::string out = "soft_tissue_avatar", json;
-    bool vtu = false;
+    bool vtu = false, usd = false;
 };
 
 struct Scene {

@@ -9,6 +9,7 @@
 #include <softtissue/anatomy/soft_layer.hpp>
 #include <softtissue/io/atomic_file.hpp>
 #include <softtissue/io/gltf.hpp>
+#include <softtissue/io/pvd.hpp>
 #include <softtissue/io/vtu.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 #include <softtissue/solver/report.hpp>
@@ -164,6 +165,7 @@ public:
         std::snprintf(name, sizeof name, "frame_%05d.vtu", num_frames_);
         softtissue::write_vtu(folder_ / "vtu" / name, tissue, cells,
                               {.vertex_arrays = {{"displacement", (tissue - skinned).cast<float>()}}, .cell_arrays = {}});
+        steps_.push_back({double(num_frames_ - 1) / frame_rate_, name});  // of the frame added last
     }
 
     void write() {
@@ -171,6 +173,9 @@ public:
             return;
         }
         write_animation(folder_ / "soft_tissue.glb");
+        if (!steps_.empty()) {
+            softtissue::write_pvd(folder_ / "vtu" / "soft_tissue.pvd", steps_);
+        }
         write_contact_sheet(folder_ / "contact_sheet.png");
     }
 
@@ -299,6 +304,7 @@ private:
     int num_frames_ = 0;
     double largest_ = 0.0;
     std::vector<Frame> frames_;
+    std::vector<softtissue::PvdStep> steps_;
     std::vector<std::filesystem::path> files_;
 };
 

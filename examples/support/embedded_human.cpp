@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "embedded_human.hpp"
 
-#include <softtissue/io/amass_file.hpp>
+#include "amass_motion.hpp"
+
 #include <softtissue/io/smpl_file.hpp>
 #include <softtissue/model/procedural_human.hpp>
 #include <softtissue/model/procedural_motion.hpp>
@@ -21,7 +22,7 @@ softtissue::SmplBody<double> read_human(const std::string& path) {
 }
 
 softtissue::Motion<double> read_human_motion(const std::string& path, softtissue::Index num_joints) {
-    return path.empty() ? embedded_motion() : softtissue::read_amass_motion<double>(path, num_joints);
+    return path.empty() ? embedded_motion() : read_motion(path, num_joints);
 }
 
 }  // namespace examples
