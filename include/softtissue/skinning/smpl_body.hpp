@@ -62,7 +62,7 @@ struct SmplBody {
             require(template_vertices.col(v).allFinite(), source, ": v_template of vertex ", v,
                     " is not finite");
         }
-        for (Index r = 0; r < shape_directions.rows(); ++r) {
+        for (Index r = 0; num_shapes() > 0 && r < shape_directions.rows(); ++r) {
             require(shape_directions.row(r).allFinite(), source, ": shapedirs of vertex ", r / 3, " is not finite");
         }
         require_finite(source, "J_regressor", joint_regressor);
