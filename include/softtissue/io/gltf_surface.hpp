@@ -268,6 +268,8 @@ inline GltfSurface welded_surface(const GltfSurface& surface, const std::string&
             corners.insert(corners.end(), c.begin(), c.end());
         }
     }
+    require(!corners.empty(), source, ": all ", surface.triangles.cols(),
+            " triangles have two corners at one place, expected a surface");
     welded.triangles = Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Index>(corners.size() / 3));
     return welded;
 }

@@ -172,6 +172,11 @@ TEST_CASE("vertices at one place become one") {
     CHECK(welded.lost_triangles == 1);
     CHECK(welded.triangles == bar.triangles.rightCols(27));
     CHECK(welded.welded_vertex[20] == 4);
+    GltfSurface point = bar;
+    point.positions.setZero();
+    point.weights.assign(16, {{0, 1.0}});
+    CHECK(contains(refusal([&] { welded_surface(point, "x"); }),
+                   "x: all 28 triangles have two corners at one place, expected a surface"));
     doubled.weights[20] = {{2, 1.0}};
     CHECK(contains(refusal([&] { welded_surface(doubled, "x"); }),
                    "x: vertices 4 and 20 lie at the same place, but their weights differ by 1, expected the same"));
