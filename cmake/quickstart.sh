@@ -20,12 +20,18 @@ say() {
 [ "$#" -eq 1 ] || usage
 task=$1
 packages="g++ cmake ninja-build pkg-config libeigen3-dev libzip-dev libtinygltf-dev
-    nlohmann-json3-dev libcli11-dev libcairo2-dev libsuitesparse-dev"
+    nlohmann-json3-dev libcli11-dev libcairo2-dev libsuitesparse-dev zlib1g-dev"
 case "$task" in
 demo) ;;
 test) packages="$packages doctest-dev catch2 libbenchmark-dev libtet1.5-dev" ;;
 *) usage ;;
 esac
+
+# The page of results (report.html) is bundled from npm packages. Debian's npm is some 400 small packages, 54 MB with node:
+# installed only where these commands are missing.
+if ! command -v node >/dev/null 2>&1 || ! command -v npm >/dev/null 2>&1; then
+    packages="$packages nodejs npm"
+fi
 
 cd "$(dirname "$0")/.."
 

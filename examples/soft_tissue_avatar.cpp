@@ -3,6 +3,7 @@
 // ctest: --body @EXAMPLES@/soft_tissue_avatar/limb.gltf --frames 30 --vtu --usd --out character_test
 //
 // A skinned body in motion with simulated soft tissue: Romero et al. 2020, from the body to pictures.
+#include "soft_tissue_avatar/report.hpp"
 #include "soft_tissue_avatar/scene.hpp"
 #include "support/embedded_human.hpp"
 #include "support/progress.hpp"
@@ -80,6 +81,10 @@ int run_program(const Settings& settings) {
     const std::filesystem::path json =
         settings.json.empty() ? std::filesystem::path(settings.out) / "results.json" : std::filesystem::path(settings.json);
     write_results(json, results);
+    if (const std::filesystem::path page = std::filesystem::path(settings.out) / "report.html";
+        write_report(page, settings, scene, results)) {
+        results.pictures.push_back(page);
+    }
     print_results(results, json);
     return results.steps.not_converged == 0 ? 0 : 1;
 }

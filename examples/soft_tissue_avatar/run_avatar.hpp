@@ -105,7 +105,7 @@ void simulate(const Settings& settings, const Scene& scene, const ThreadExecutor
         if (report.status == SolveStatus::cancelled) {
             break;
         }
-        results.steps.add(report, avatar.count_inverted(), 1e3 * (seconds() - start));
+        results.steps.add(output.time(), report, avatar.count_inverted(), 1e3 * (seconds() - start));
         scene.skin.pose_into(poses[k], skin, executor);
         output.add_frame(skin.positions, avatar.positions());
         if (settings.vtu) {
@@ -121,8 +121,7 @@ void simulate(const Settings& settings, const Scene& scene, const ThreadExecutor
     if (usd && results.steps.count > 0) {
         usd->write(std::filesystem::path(settings.out) / "soft_tissue.usda");
     }
-    results.pictures = output.files();
-    results.largest_displacement = output.largest_displacement();
+    output.move_into(results);
 }
 
 template <class ElementType>

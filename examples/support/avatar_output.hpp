@@ -4,6 +4,7 @@
 #pragma once
 
 #include "color_scale.hpp"
+#include "html_report.hpp"
 #include "mesh_picture.hpp"
 
 #include <softtissue/anatomy/soft_layer.hpp>
@@ -21,12 +22,22 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace examples {
 
+/// One time step.
+struct StepRecord {
+    double time = 0.0;    // [s]
+    double energy = 0.0;  // what the step minimised [J]
+    int quasi_newton_steps = 0, newton_iterations = 0;
+    double milliseconds = 0.0;
+};
+
 /// Counts over all time steps.
 struct StepStatistics {
+    std::vector<StepRecord> records = {};
     int count = 0;
     int not_converged = 0;
     long newton_iterations = 0;
@@ -34,7 +45,8 @@ struct StepStatistics {
     Index inverted_cells_max = 0;
     double milliseconds = 0.0;
 
-    void add(const softtissue::SolveReport<double>& report, Index inverted_cells, double step_milliseconds) {
+    void add(double time, const softtissue::SolveReport<double>& report, Index inverted_cells, double step_milliseconds) {
+        records.push_back({time, report.energy, report.quasi_newton_steps, report.iterations, step_milliseconds});
         ++count;
         not_converged += report.succeeded() ? 0 : 1;
         newton_iterations += report.iterations;
@@ -52,6 +64,20 @@ struct StaticPose {
     softtissue::SolveStatus status = softtissue::SolveStatus::cancelled;
 };
 
+/// The skin of one frame, as the body has it and as the tissue has it.
+struct AvatarFrame {
+    Matrix3X<float> skinned, simulated;
+    double time = 0.0;     // [s]
+    double largest = 0.0;  // displacement [m]
+
+    Eigen::VectorXf displacement() const { return (simulated - skinned).colwise().norm(); }
+};
+
+/// The largest displacement of a frame, told for all frames.
+struct DisplacementRecord {
+    double time = 0.0, largest = 0.0, mean = 0.0;  // [s], [m]
+};
+
 struct AvatarResults {
     Index vertices = 0, cells = 0, free_vertices = 0, inverted_at_rest = 0;
     StaticPose static_unposed, static_world, static_retargeted;
@@ -60,6 +86,9 @@ struct AvatarResults {
     double seconds_setup = 0.0;
     bool interrupted = false;
     std::vector<std::filesystem::path> pictures;
+    std::vector<AvatarFrame> frames;  // at about 30 Hz
+    std::vector<DisplacementRecord> displacements;
+    double displacement_scale = 0.0;  // top of the colour scale [m]
 };
 
 /// Largest amount of memory that this process has held [bytes].
@@ -99,30 +128,34 @@ inline void write_results(const std::filesystem::path& path, const AvatarResults
     file.commit();
 }
 
-inline void print_results(const AvatarResults& results, const std::filesystem::path& json) {
-    std::printf("\n");
-    const auto row = [](const char* name, const std::string& value) { std::printf("  %-34s %s\n", name, value.c_str()); };
-    const auto number = [](const char* format, double value) {
-        char text[64];
-        std::snprintf(text, sizeof text, format, value);
-        return std::string(text);
-    };
+/// What the results come to, for the terminal and for the page.
+inline std::vector<std::pair<std::string, std::string>> result_rows(const AvatarResults& results) {
+    std::vector<std::pair<std::string, std::string>> rows;
+    const auto row = [&](const char* name, const std::string& value) { rows.emplace_back(name, value); };
     row("cells, vertices, of them free", std::to_string(results.cells) + ", " + std::to_string(results.vertices) + ", " +
                                              std::to_string(results.free_vertices));
     row("inverted cells at rest, ever", std::to_string(results.inverted_at_rest) + ", " +
                                             std::to_string(results.steps.inverted_cells_max));
     const auto static_row = [&](const char* name, const StaticPose& pose) {
-        row(name, number("%.3g mm from the skinned body, ", 1e3 * pose.error) + to_string(pose.status));
+        row(name, formatted("%.3g mm from the skinned body, ", 1e3 * pose.error) + to_string(pose.status));
     };
     static_row("static pose, unposed strain", results.static_unposed);
     static_row("static pose, world strain", results.static_world);
     static_row("static pose, retargeted strain", results.static_retargeted);
     row("time steps, not converged", std::to_string(results.steps.count) + ", " + std::to_string(results.steps.not_converged));
-    row("Newton iterations a step", number("%.2f", results.steps.newton_iterations_mean()) + ", at most " +
+    row("Newton iterations a step", formatted("%.2f", results.steps.newton_iterations_mean()) + ", at most " +
                                         std::to_string(results.steps.newton_iterations_max));
-    row("time a step", number("%.1f ms", results.steps.milliseconds_mean()));
-    row("largest soft-tissue displacement", number("%.1f mm", 1e3 * results.largest_displacement));
-    row("set-up, peak memory", number("%.1f s, ", results.seconds_setup) + number("%.0f MB", double(peak_memory_bytes()) / 1e6));
+    row("time a step", formatted("%.1f ms", results.steps.milliseconds_mean()));
+    row("largest soft-tissue displacement", formatted("%.1f mm", 1e3 * results.largest_displacement));
+    row("set-up, peak memory", formatted("%.1f s, ", results.seconds_setup) + formatted("%.0f MB", double(peak_memory_bytes()) / 1e6));
+    return rows;
+}
+
+inline void print_results(const AvatarResults& results, const std::filesystem::path& json) {
+    std::printf("\n");
+    for (const auto& [name, value] : result_rows(results)) {
+        std::printf("  %-34s %s\n", name.c_str(), value.c_str());
+    }
     std::printf("\n%s", results.interrupted ? "interrupted; results up to there in\n" : "results in\n");
     for (const std::filesystem::path& file : results.pictures) {
         std::printf("  %s\n", file.c_str());
@@ -151,9 +184,9 @@ public:
         }
         const Eigen::VectorXd displacement = (simulated - skinned).colwise().norm();
         largest_ = std::max(largest_, displacement.maxCoeff());
+        displacements_.push_back({time(), displacement.maxCoeff(), displacement.mean()});
         if (num_frames_ % stride_ == 0) {
-            frames_.push_back({skinned.cast<float>(), simulated.cast<float>(), double(num_frames_) / frame_rate_,
-                               displacement.maxCoeff()});
+            frames_.push_back({skinned.cast<float>(), simulated.cast<float>(), time(), displacement.maxCoeff()});
         }
         ++num_frames_;
     }
@@ -179,15 +212,20 @@ public:
         write_contact_sheet(folder_ / "contact_sheet.png");
     }
 
-    const std::vector<std::filesystem::path>& files() const { return files_; }
-    double largest_displacement() const { return largest_; }
+    /// Of the frame that is added next [s].
+    double time() const { return double(num_frames_) / frame_rate_; }
+
+    /// Gives everything away.
+    void move_into(AvatarResults& results) {
+        results.pictures = std::move(files_);
+        results.largest_displacement = largest_;
+        results.displacement_scale = scale_top();
+        results.frames = std::move(frames_);
+        results.displacements = std::move(displacements_);
+    }
 
 private:
-    struct Frame {
-        Matrix3X<float> skinned, simulated;
-        double time;
-        double largest;
-    };
+    using Frame = AvatarFrame;
 
     /// Top of the colour scale [m]: the largest displacement, rounded up to 1, 2 or 5 times a power of ten.
     double scale_top() const {
@@ -203,8 +241,9 @@ private:
 
     static Matrix3X<float> displacement_colors(const Frame& frame, double top) {
         Matrix3X<float> colors(3, frame.skinned.cols());
+        const Eigen::VectorXf displacement = frame.displacement();
         for (Index v = 0; v < colors.cols(); ++v) {
-            colors.col(v) = scale_color(double((frame.simulated.col(v) - frame.skinned.col(v)).norm()) / top);
+            colors.col(v) = scale_color(double(displacement(v)) / top);
         }
         return colors;
     }
@@ -305,6 +344,7 @@ private:
     double largest_ = 0.0;
     std::vector<Frame> frames_;
     std::vector<softtissue::PvdStep> steps_;
+    std::vector<DisplacementRecord> displacements_;
     std::vector<std::filesystem::path> files_;
 };
 

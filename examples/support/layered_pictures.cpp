@@ -14,18 +14,7 @@
 
 namespace examples {
 
-namespace {
-
-/// Volume changes at the ends of the colour scale.
-constexpr double volume_scale = 0.3;
-
-const Eigen::Vector3f bone_color(0.93F, 0.86F, 0.62F);
-const Eigen::Vector3f muscle_color(0.75F, 0.20F, 0.18F);
-const Eigen::Vector3f skin_color(0.62F, 0.72F, 0.86F);
-
-}  // namespace
-
-Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scalar>& x, Scene::Frame frame) {
+ColumnChange column_change(const Scene& scene, const Matrix3X<Scalar>& x) {
     const VolumeChange<Scalar> change = volume_change(scene.layered.mesh, x);
     VectorX<Scalar> sums = VectorX<Scalar>::Zero(scene.layered.num_columns());
     VectorX<Scalar> counts = sums;
@@ -36,11 +25,16 @@ Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scal
             counts(column) += 1.0;
         }
     }
-    Shot shot{label, std::move(frame), Matrix3X<float>(3, scene.body.num_vertices()), std::sqrt(change.mean_square)};
+    return {(sums.array() / counts.array()).matrix(), std::sqrt(change.mean_square), change.num_inverted};
+}
+
+Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scalar>& x, Scene::Frame frame) {
+    const ColumnChange change = column_change(scene, x);
+    Shot shot{label, std::move(frame), Matrix3X<float>(3, scene.body.num_vertices()), change.root_mean_square};
     shot.colors.colwise() = scale_color(0.0);
     for (Index c = 0; c < scene.layered.num_columns(); ++c) {
         shot.colors.col(scene.layered.region.body_vertices[size_t(c)]) =
-            signed_scale_color(sums(c) / counts(c) / volume_scale);
+            signed_scale_color(change.relative(c) / volume_scale);
     }
     return shot;
 }

@@ -18,6 +18,22 @@ class GltfAnimation;
 
 namespace examples {
 
+/// Volume changes at the ends of the colour scale.
+inline constexpr double volume_scale = 0.3;
+
+inline const Eigen::Vector3f bone_color(0.93F, 0.86F, 0.62F);
+inline const Eigen::Vector3f muscle_color(0.75F, 0.20F, 0.18F);
+inline const Eigen::Vector3f skin_color(0.62F, 0.72F, 0.86F);
+
+/// Relative change of volume under each column of the layers, and over all cells.
+struct ColumnChange {
+    VectorX<Scalar> relative;
+    double root_mean_square = 0.0;
+    Index num_inverted = 0;
+};
+
+ColumnChange column_change(const Scene& scene, const Matrix3X<Scalar>& x);
+
 /// One pose by one method; the label says which.
 struct Shot {
     std::string label;
@@ -26,7 +42,7 @@ struct Shot {
     double mean_change = 0.0;
 };
 
-/// The change of the columns under each skin vertex, root mean square of all cells in mean_change.
+/// Coloured by column_change().
 Shot make_shot(const std::string& label, const Scene& scene, const Matrix3X<Scalar>& x, Scene::Frame frame);
 
 /// Above the skins coloured by volume change, below the same bodies transparent over bones and muscles.
