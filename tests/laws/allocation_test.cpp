@@ -2,6 +2,9 @@
 // Nothing is allocated per frame.
 #include <support/allocation_counter.hpp>
 
+#include <softtissue/avatar/soft_tissue_avatar.hpp>
+#include <softtissue/material/field.hpp>
+#include <softtissue/material/stable_neo_hookean.hpp>
 #include <softtissue/ndg/layered_flesh.hpp>
 #include <softtissue/skinning/blended_rotation.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
@@ -90,4 +93,35 @@ TEST_CASE("quasi-static solves allocate in their first iteration only") {
     CHECK(report.succeeded());
     CHECK(watched > 0);
     CHECK(report.quasi_newton_steps > 0);
+
+    x = limb.bent(0.8);
+    const AllocationCounter counter;
+    CHECK(flesh.solve_into(x).succeeded());
+    CHECK(counter.count() == 0);
+}
+
+TEST_CASE_TEMPLATE("an avatar's steps allocate nothing after the first, by Newton's method neither", Frame,
+                   UnposedFrame, WorldFrame) {
+    using Field = UniformField<StableNeoHookean<double>>;
+    const RiggedBar<Prism6> bar(2);
+    const SequentialExecutor executor;
+    const Field field{StableNeoHookean<double>::from_young_poisson({2e5, 0.3})};
+    for (const int quasi_newton_steps : {30, 0}) {
+        CAPTURE(quasi_newton_steps);
+        SoftTissueAvatar<Prism6, Field, Frame> avatar(VolumetricSmpl<double>(bar.body), bar.mesh, bar.prescribed, field,
+                                                      executor, {.quasi_newton = {.max_steps = quasi_newton_steps}});
+        CHECK(avatar.step(RiggedBar<Prism6>::swing(1)).succeeded());
+        std::vector<Pose<double>> poses;
+        for (int k = 2; k < 8; ++k) {
+            poses.push_back(RiggedBar<Prism6>::swing(k));
+        }
+        int steps = 0;
+        const AllocationCounter counter;
+        for (const Pose<double>& pose : poses) {
+            const SolveReport<double> report = avatar.step(pose);
+            steps += report.iterations + report.quasi_newton_steps;
+        }
+        CHECK(counter.count() == 0);
+        CHECK(steps >= 6);
+    }
 }

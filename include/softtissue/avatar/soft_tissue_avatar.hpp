@@ -11,6 +11,7 @@
 /// Parameters  Element x MaterialField x StrainFrame x SkinningPolicy x Executor x metric
 /// Units       density kg/m^3, time step s
 /// Refuses     a mesh or model that do not fit, cells that are not positive at rest, a density or time step that is not positive
+/// Cost        step() allocates in the first steps only
 /// Threads     one avatar belongs to one thread at a time; it may use an executor of many
 /// Source      Romero et al. 2020, sec. 3.4, 4.1, 4.2
 /// Departs     the unknown is the unposed displacement, so the inverse of a blended skinning matrix is never taken
@@ -31,6 +32,7 @@
 #include <softtissue/solver/direct_solver.hpp>
 #include <softtissue/solver/implicit_euler.hpp>
 #include <softtissue/solver/metric_cg.hpp>
+#include <softtissue/solver/newton_workspace.hpp>
 #include <softtissue/solver/quasi_newton.hpp>
 #include <softtissue/solver/scalar_metric.hpp>
 
@@ -168,7 +170,7 @@ private:
                 return fast;
             }
         }
-        SolveReport<Scalar> report = minimise(objective, linear_solver_, d, options_.newton, observer);
+        SolveReport<Scalar> report = minimise(objective, linear_solver_, d, options_.newton, observer, workspace_);
         report.quasi_newton_steps += fast.quasi_newton_steps;
         report.energy_evaluations += fast.energy_evaluations;
         return report;
@@ -228,6 +230,7 @@ private:
     Metric metric_;
     MetricCg<Metric> linear_solver_{metric_};
     QuasiNewton<Scalar> quasi_newton_;
+    NewtonWorkspace<Scalar> workspace_;
     ImplicitEuler<MetricCg<Metric>, ExecutorType, Elastic> euler_;
     PosedBody<Scalar> posed_;
     Placement<Scalar> skinned_;

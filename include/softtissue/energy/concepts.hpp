@@ -10,6 +10,8 @@
 ///   T.add_hessian(d, filter, hessian, executor)       hessian += d2E/dd2 on the free vertices [N/m], each stencil filtered
 /// and, where that is less work than one after the other,
 ///   T.add_energy_and_gradient(d, gradient, executor)  gradient += dE/dd, returns the energy
+/// and, where it has one in closed form,
+///   T.add_convex_hessian(d, hessian, executor)        a positive semi-definite Hessian, see convexified.hpp
 /// A term owns its scratch memory: one object serves one solver at a time.
 ///
 /// Laws        gradient and Hessian are derivatives (Taylor rates), tests/laws/energy_laws_test.cpp

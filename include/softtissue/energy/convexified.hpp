@@ -2,7 +2,8 @@
 /// @file
 /// An energy term whose Hessian is always positive semi-definite.
 ///
-/// What        EnergyTerm around another one: the same energy and gradient; where the exact Hessian is asked for, the clamped.
+/// What        EnergyTerm around another one: the same energy and gradient, and whatever filter is asked for the convex Hessian
+///             that the term has in closed form (add_convex_hessian()). Where it has none: the clamped one in place of the exact.
 /// Why         skin that goes slack or folds makes the exact Hessian of a body indefinite nearly to the end of a solve, though
 ///             its energy is a small part: without the skin's negative curvature Newton may use the flesh's exact Hessian
 ///             early. The price is linear instead of quadratic convergence, at a rate set by the share of what is left out.
@@ -37,7 +38,13 @@ public:
         term_->add_gradient(d, gradient, executor);
     }
 
-    void add_neighbours(const PrescribedVertices& prescribed, std::vector<std::vector<std::int32_t>>& neighbours) const {
+    template <Executor E>
+    Scalar add_energy_and_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor) {
+        return softtissue::add_energy_and_gradient(*term_, d, gradient, executor);
+    }
+
+    void add_neighbours(const PrescribedVertices& prescribed,
+                        std::vector<std::vector<std::int32_t>>& neighbours) const {
         term_->add_neighbours(prescribed, neighbours);
     }
 
@@ -45,7 +52,11 @@ public:
 
     template <Executor E>
     void add_hessian(const Matrix3X<Scalar>& d, PsdFilter filter, BlockMatrix<Scalar>& hessian, const E& executor) {
-        term_->add_hessian(d, filter == PsdFilter::none ? PsdFilter::clamp : filter, hessian, executor);
+        if constexpr (requires { term_->add_convex_hessian(d, hessian, executor); }) {
+            term_->add_convex_hessian(d, hessian, executor);
+        } else {
+            term_->add_hessian(d, filter == PsdFilter::none ? PsdFilter::clamp : filter, hessian, executor);
+        }
     }
 
 private:

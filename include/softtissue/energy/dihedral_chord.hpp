@@ -21,6 +21,7 @@
 /// Tests       tests/unit/energy/dihedral_chord_test.cpp
 #pragma once
 
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/energy/hinge_invariants.hpp>
 
@@ -34,13 +35,15 @@ namespace softtissue {
 namespace detail {
 
 /// q^(-1/2) for q >= threshold, below its quadratic Taylor polynomial there; with two derivatives.
-template <class Scalar>
+template <RealLanes Scalar>
 struct BoundedInverseRoot {
     Scalar value, first, second;
 
     BoundedInverseRoot(Scalar q, Scalar threshold) {
-        const Scalar base = std::max(q, threshold);
-        const Scalar root = Scalar(1) / std::sqrt(base);
+        using std::max;
+        using std::sqrt;
+        const Scalar base = max(q, threshold);
+        const Scalar root = Scalar(1) / sqrt(base);
         const Scalar t = (q - base) / base;
         value = root * (Scalar(1) + t * (Scalar(-0.5) + Scalar(0.375) * t));
         first = root / base * (Scalar(-0.5) + Scalar(0.75) * t);
@@ -50,20 +53,25 @@ struct BoundedInverseRoot {
 
 }  // namespace detail
 
-template <RealScalar S>
+template <RealLanes S>
 class DihedralChord {
 public:
     using Scalar = S;
     using Invariants = HingeInvariants<Scalar>;
     using Values = typename Invariants::Values;
     using SquareMatrix = typename Invariants::SquareMatrix;
+    template <RealLanes T>
+    using Over = DihedralChord<T>;
 
     /// The measure whose rest shape is `rest`.
     explicit DihedralChord(const Invariants& rest) {
+        using std::max;
+        using std::min;
+        using std::sqrt;
         const Scalar squared_length = rest.values()(hinge_length);
-        const auto threshold_of = [](Scalar squared, Scalar unit) {
+        const auto threshold_of = [](const Scalar& squared, const Scalar& unit) -> Scalar {
             // a rest triangle without area has a weight of zero; the floor keeps its derivatives finite
-            return std::max(squared / Scalar(16), std::numeric_limits<Scalar>::epsilon() * unit);
+            return max(Scalar(squared / Scalar(16)), Scalar(std::numeric_limits<RealOf<Scalar>>::epsilon() * unit));
         };
         length_threshold_ = threshold_of(squared_length, squared_length);
         weight_ = Scalar(6);
@@ -71,9 +79,9 @@ public:
         for (int i = 0; i < 2; ++i) {
             const Scalar squared_area = rest.values()(hinge_first_area + i);
             area_thresholds_[size_t(i)] = threshold_of(squared_area, squared_length * squared_length);
-            const Scalar height = std::sqrt(squared_area) / squared_length;
-            heights += std::max(height, sliver_height);
-            const Scalar lowering = std::min(Scalar(1), height / sliver_height);
+            const Scalar height = sqrt(squared_area) / squared_length;
+            heights += max(height, Scalar(sliver_height));
+            const Scalar lowering = min(Scalar(1), Scalar(height / sliver_height));
             weight_ *= lowering * lowering;
         }
         weight_ /= heights;
@@ -105,8 +113,26 @@ public:
                           (v.sine() - rest_[1]) * v.sine_hessian());
     }
 
+    /// See HasConvexPart. Where v is a unit vector the energy depends on the angle alone, with second derivative w v.V.
+    HingeConvexPart<Scalar, 2> convex_part(const Invariants& hinge) const {
+        using std::max;
+        using std::sqrt;
+        const Values& p = hinge.values();
+        const UnitCircle v(*this, p);
+        const auto is_regular = (p(hinge_first_area) >= area_thresholds_[0]) &
+                                (p(hinge_second_area) >= area_thresholds_[1]) & (p(hinge_length) >= length_threshold_);
+        const Scalar x = v.cosine(), y = v.sine();
+        const Scalar second = select(is_regular, max(Scalar(x * rest_[0] + y * rest_[1]), Scalar(0)), Scalar(1));
+        const Scalar root = sqrt(weight_ * second);
+        HingeConvexPart<Scalar, 2> part;
+        part.roots.col(0) = root * v.cosine_gradient();
+        part.roots.col(1) = root * v.sine_gradient();
+        part.moment = select(is_regular, weight_ * (y * rest_[0] - x * rest_[1]), Scalar(0));
+        return part;
+    }
+
 private:
-    static constexpr Scalar sliver_height = Scalar(0.1);
+    static constexpr RealOf<Scalar> sliver_height = RealOf<Scalar>(0.1);
 
     /// cosine = r1 r2 P, sine = r1 r2 q r(q) D with P, D, q1, q2, q the invariants and r the bounded inverse root.
     struct UnitCircle {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <softtissue/core/error.hpp>
+#include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/energy/hinge_invariants.hpp>
 
@@ -18,19 +19,22 @@
 
 namespace softtissue {
 
-template <RealScalar S>
+template <RealLanes S>
 class DihedralDifference {
 public:
     using Scalar = S;
     using Invariants = HingeInvariants<Scalar>;
     using Values = typename Invariants::Values;
     using SquareMatrix = typename Invariants::SquareMatrix;
+    template <RealLanes T>
+    using Over = DihedralDifference<T>;
 
     /// The measure whose rest shape is `rest`.
     explicit DihedralDifference(const Invariants& rest) : rest_angle_(rest.angle()) {
-        const Scalar first = std::sqrt(rest.values()(hinge_first_area));
-        const Scalar second = std::sqrt(rest.values()(hinge_second_area));
-        require(first > Scalar(0) && second > Scalar(0), "a rest triangle has no area");
+        using std::sqrt;
+        const Scalar first = sqrt(rest.values()(hinge_first_area));
+        const Scalar second = sqrt(rest.values()(hinge_second_area));
+        require(all_of(first > Scalar(0)) && all_of(second > Scalar(0)), "a rest triangle has no area");
         weight_ = Scalar(6) * rest.values()(hinge_length) / (first + second);
     }
 
@@ -52,6 +56,12 @@ public:
         return weight_ * (angle.first * angle.first.transpose() + (hinge.angle() - rest_angle_) * angle.second);
     }
 
+    /// See HasConvexPart.
+    HingeConvexPart<Scalar, 1> convex_part(const Invariants& hinge) const {
+        using std::sqrt;
+        return {sqrt(weight_) * AngleDerivatives(hinge).first, weight_ * (hinge.angle() - rest_angle_)};
+    }
+
 private:
     /// theta = atan2(Y, X) with X = values[0] and Y = sqrt(q) D.
     struct AngleDerivatives {
@@ -60,7 +70,8 @@ private:
 
         explicit AngleDerivatives(const Invariants& hinge) {
             const Values& p = hinge.values();
-            const Scalar root = std::sqrt(p(hinge_length));
+            using std::sqrt;
+            const Scalar root = sqrt(p(hinge_length));
             const Scalar X = p(hinge_cosine);
             const Scalar Y = root * p(hinge_sine);
             const Scalar squared_radius = X * X + Y * Y;

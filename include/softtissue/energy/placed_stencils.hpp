@@ -6,6 +6,7 @@
 ///             these vectors, and carries them to the displacements d of the vertices.
 /// Equation    e_m = x_m - x_0;  dE/dx_m = dE/de_m,  dE/dx_0 = - sum_m dE/de_m;  dE/dd_m = A_m^T dE/dx_m
 /// Shapes      edges, gradient by edges: 3 x (num_nodes - 1); Hessian by edges: 3 (num_nodes - 1) square
+/// Packs       packed_...: as many stencils at a time as a register has lanes, their edges in packs
 /// Why edges   two large positions cancel before the displacements are added, so float keeps the digits of d; a Hessian that is
 ///             positive semi-definite in e is so in d.
 /// Tests       tests/unit/energy/placed_stencils_test.cpp
@@ -14,16 +15,15 @@
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/energy/node_packs.hpp>
 #include <softtissue/energy/placement.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,12 +36,18 @@ public:
     static constexpr int num_nodes = num_nodes_;
     static constexpr int num_edges = num_nodes - 1;
 
+    static constexpr int width = natural_lanes<Scalar>;
+    using Lanes = Pack<Scalar, width>;
+
     using Edges = Eigen::Matrix<Scalar, 3, num_edges>;
+    using PackedEdges = Eigen::Matrix<Lanes, 3, num_edges>;
     using EdgeHessian = Eigen::Matrix<Scalar, 3 * num_edges, 3 * num_edges>;
 
     /// Stencil indices must be valid; TriangleMesh has checked them.
     PlacedStencils(Connectivity<num_nodes> stencils, Matrix3X<Scalar> rest_positions)
-        : assembly_(std::move(stencils), rest_positions.cols()), rest_{std::move(rest_positions), {}} {
+        : assembly_(std::move(stencils), rest_positions.cols()),
+          nodes_(this->stencils()),
+          rest_{std::move(rest_positions), {}} {
         for (Index s = 0; s < num_stencils(); ++s) {
             for (int m = 0; m < num_nodes; ++m) {
                 const std::int32_t v = this->stencils()(m, s);
@@ -51,6 +57,9 @@ public:
     }
 
     Index num_stencils() const { return assembly_.num_stencils(); }
+    Index num_packs() const { return nodes_.num_packs(); }
+    /// The stencil in a lane of a pack; the lanes beyond the last stencil repeat it.
+    Index stencil(Index pack, int lane) const { return nodes_.cell(pack, lane); }
     Index num_vertices() const { return assembly_.num_vertices(); }
     const Connectivity<num_nodes>& stencils() const { return assembly_.stencils(); }
 
@@ -77,6 +86,25 @@ public:
         return edges;
     }
 
+    PackedEdges packed_rest_edges(Index pack) const {
+        return packed_matrix<width>([&](int i) { return rest_edges(stencil(pack, i)); });
+    }
+
+    PackedEdges packed_edges(const Matrix3X<Scalar>& d, Index pack) const {
+        const Placement<Scalar>& at = placement();
+        if (at.has_maps()) {
+            return packed_matrix<width>([&](int i) { return edges(d, stencil(pack, i)); });
+        }
+        const PackedNodes origins = nodes_.gather(at.origins, pack), displacements = nodes_.gather(d, pack);
+        PackedEdges edges;
+        for (int m = 0; m < num_edges; ++m) {
+            for (int k = 0; k < 3; ++k) {
+                edges(k, m) = (origins(k, m + 1) - origins(k, 0)) + (displacements(k, m + 1) - displacements(k, 0));
+            }
+        }
+        return edges;
+    }
+
     /// Sum of `energy_of(stencil, edges)`.
     template <Executor E, class EnergyOf>
     Scalar sum_energy(const Matrix3X<Scalar>& d, const E& executor, const EnergyOf& energy_of) {
@@ -93,9 +121,7 @@ public:
                 const Edges by_edges = gradient_of(s, edges(d, s));
                 typename Assembly::GradientSlot slot;
                 slot << -by_edges.rowwise().sum(), by_edges;
-                for (int m = 0; m < num_nodes; ++m) {
-                    slot.col(m) = placement().pull_back(stencils()(m, s), slot.col(m));
-                }
+                pull_back_gradient(s, slot);
                 return slot;
             },
             gradient);
@@ -115,24 +141,57 @@ public:
     void add_hessian(const Matrix3X<Scalar>& d, BlockMatrix<Scalar>& hessian, const E& executor,
                      const HessianOf& hessian_of) {
         assembly_.add_hessian(
-            executor, [&](Index s, auto blocks) { fill_blocks(s, hessian_of(s, edges(d, s)), blocks); }, hessian);
+            executor,
+            [&](Index s, auto blocks) {
+                blocks = blocks_by_positions<Scalar>(hessian_of(s, edges(d, s)));
+                pull_back(s, blocks);
+            },
+            hessian);
     }
 
-    /// As add_hessian() for functions that work on several stencils at once: `fill(first, hessians)` fills the EdgeHessians of
-    /// the stencils first, first + 1, ...
-    template <int batch, Executor E, class Fill>
-    void add_hessian_in_batches(BlockMatrix<Scalar>& hessian, const E& executor, const Fill& fill) {
-        assembly_.add_hessian_by_ranges(
+    /// Sum of `energy_of(pack, edges)`, Lanes of PackedEdges.
+    template <Executor E, class EnergyOf>
+    Scalar sum_packed_energy(const Matrix3X<Scalar>& d, const E& executor, const EnergyOf& energy_of) {
+        return assembly_.template sum_packed_energy<width>(
+            executor, [&](Index pack, Scalar* slots) { Lanes(energy_of(pack, packed_edges(d, pack))).store(slots); });
+    }
+
+    /// `gradient_of(pack, edges)` returns PackedEdges.
+    template <Executor E, class GradientOf>
+    void add_packed_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor,
+                             const GradientOf& gradient_of) {
+        assembly_.template add_packed_gradient<width>(
             executor,
-            [&](Index begin, Index end, const auto& blocks_of) {
-                std::array<EdgeHessian, size_t(batch)> hessians;
-                for (Index first = begin; first < end; first += batch) {
-                    const size_t count = size_t(std::min(Index(batch), end - first));
-                    fill(first, std::span(hessians).first(count));
-                    for (size_t k = 0; k < count; ++k) {
-                        auto blocks = blocks_of(first + Index(k));
-                        fill_blocks(first + Index(k), hessians[k], blocks);
-                    }
+            [&](Index pack, Scalar* slots) { fill_gradients(pack, gradient_of(pack, packed_edges(d, pack)), slots); },
+            gradient);
+    }
+
+    /// Both: `terms_of(pack, edges, by_edges)` writes PackedEdges and returns the energies.
+    template <Executor E, class TermsOf>
+    Scalar add_packed_energy_and_gradient(const Matrix3X<Scalar>& d, Matrix3X<Scalar>& gradient, const E& executor,
+                                          const TermsOf& terms_of) {
+        return assembly_.template add_packed_energy_and_gradient<width>(
+            executor,
+            [&](Index pack, Scalar* energies, Scalar* slots) {
+                PackedEdges by_edges;
+                Lanes(terms_of(pack, packed_edges(d, pack), by_edges)).store(energies);
+                fill_gradients(pack, by_edges, slots);
+            },
+            gradient);
+    }
+
+    /// `hessian_of(pack, edges)` returns EdgeHessian of Lanes.
+    template <Executor E, class HessianOf>
+    void add_packed_hessian(const Matrix3X<Scalar>& d, BlockMatrix<Scalar>& hessian, const E& executor,
+                            const HessianOf& hessian_of) {
+        assembly_.template add_packed_hessian<width>(
+            executor,
+            [&](Index pack, Scalar* slots) {
+                const Blocks<Lanes> blocks = blocks_by_positions<Lanes>(hessian_of(pack, packed_edges(d, pack)));
+                for (int i = 0; i < width; ++i) {
+                    Eigen::Map<Blocks<Scalar>> slot(slots + Assembly::hessian_slot * i);
+                    slot = lane(blocks, i);
+                    pull_back(stencil(pack, i), slot);
                 }
             },
             hessian);
@@ -140,40 +199,84 @@ public:
 
 private:
     using Assembly = StencilAssembly<num_nodes, Scalar>;
+    using PackedNodes = Eigen::Matrix<Lanes, 3, num_nodes>;
+    template <class T>
+    using Blocks = Eigen::Matrix<T, 3, 3 * Assembly::num_block_pairs>;
 
     const Placement<Scalar>& placement() const { return placement_ != nullptr ? *placement_ : rest_; }
 
-    template <class Blocks>
-    void fill_blocks(Index s, const EdgeHessian& H, Blocks& blocks) const {
-        Eigen::Matrix<Scalar, 3, 3 * num_edges> first_row = -H.template topRows<3>();
-        for (int a = 1; a < num_edges; ++a) {
-            first_row -= H.template middleRows<3>(3 * a);
+    void fill_gradients(Index pack, const PackedEdges& by_edges, Scalar* slots) const {
+        PackedNodes by_nodes;
+        for (int k = 0; k < 3; ++k) {
+            Lanes sum = by_edges(k, 0);
+            by_nodes(k, 1) = by_edges(k, 0);
+            for (int m = 1; m < num_edges; ++m) {
+                sum += by_edges(k, m);
+                by_nodes(k, m + 1) = by_edges(k, m);
+            }
+            by_nodes(k, 0) = -sum;
         }
-        Matrix3<Scalar> corner = -first_row.template leftCols<3>();
-        for (int b = 1; b < num_edges; ++b) {
-            corner -= first_row.template middleCols<3>(3 * b);
+        for (int i = 0; i < width; ++i) {
+            Eigen::Map<typename Assembly::GradientSlot> slot(slots + 3 * num_nodes * i);
+            slot = lane(by_nodes, i);
+            pull_back_gradient(stencil(pack, i), slot);
         }
-        set_block(s, 0, 0, corner, blocks);
-        for (int b = 0; b < num_edges; ++b) {
-            set_block(s, 0, b + 1, first_row.template middleCols<3>(3 * b), blocks);
-            for (int a = 0; a <= b; ++a) {
-                set_block(s, a + 1, b + 1, H.template block<3, 3>(3 * a, 3 * b), blocks);
+    }
+
+    template <class Slot>
+    void pull_back_gradient(Index s, Slot& slot) const {
+        if (placement().has_maps()) {
+            for (int m = 0; m < num_nodes; ++m) {
+                slot.col(m) = placement().pull_back(stencils()(m, s), slot.col(m));
             }
         }
     }
 
-    template <class Blocks>
-    void set_block(Index s, int a, int b, const Matrix3<Scalar>& by_positions, Blocks& blocks) const {
-        auto block = blocks.template middleCols<3>(3 * Assembly::pair_index(a, b));
-        if (placement().has_maps()) {
-            const Matrix3<Scalar> by_column = by_positions * placement().map(stencils()(b, s));
-            block.noalias() = placement().map(stencils()(a, s)).transpose() * by_column;
-        } else {
-            block = by_positions;
+    /// The blocks of a stencil, or of a pack of them, by the positions of its nodes.
+    template <class T>
+    static Blocks<T> blocks_by_positions(const Eigen::Matrix<T, 3 * num_edges, 3 * num_edges>& H) {
+        Blocks<T> blocks;
+        const auto set = [&](int a, int b, int row, int column, const T& entry) {
+            blocks(row, 3 * Assembly::pair_index(a, b) + column) = entry;
+        };
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) {
+                T corner(0);
+                for (int b = 0; b < num_edges; ++b) {
+                    T sum(0);
+                    for (int a = 0; a < num_edges; ++a) {
+                        const T entry = H(3 * a + row, 3 * b + column);
+                        sum += entry;
+                        if (a <= b) {
+                            set(a + 1, b + 1, row, column, entry);
+                        }
+                    }
+                    set(0, b + 1, row, column, -sum);
+                    corner += sum;
+                }
+                set(0, 0, row, column, corner);
+            }
+        }
+        return blocks;
+    }
+
+    /// From positions to displacements.
+    template <class Slot>
+    void pull_back(Index s, Slot& blocks) const {
+        if (!placement().has_maps()) {
+            return;
+        }
+        for (int b = 0; b < num_nodes; ++b) {
+            for (int a = 0; a <= b; ++a) {
+                auto block = blocks.template middleCols<3>(3 * Assembly::pair_index(a, b));
+                const Matrix3<Scalar> by_column = block * placement().map(stencils()(b, s));
+                block.noalias() = placement().map(stencils()(a, s)).transpose() * by_column;
+            }
         }
     }
 
     Assembly assembly_;
+    NodePacks<num_nodes, width> nodes_;
     Placement<Scalar> rest_;
     const Placement<Scalar>* placement_ = nullptr;
 };

@@ -37,6 +37,7 @@
 #include <softtissue/solver/concepts.hpp>
 #include <softtissue/solver/gauss_seidel_cg.hpp>
 #include <softtissue/solver/newton.hpp>
+#include <softtissue/solver/newton_workspace.hpp>
 #include <softtissue/solver/objective.hpp>
 
 #include <cstdint>
@@ -120,7 +121,8 @@ public:
         require(x.cols() == rest_positions_.cols(), "layered flesh: ", x.cols(), " positions, expected ",
                 rest_positions_.cols());
         displacement_ = x - rest_positions_;
-        const SolveReport<Scalar> report = minimise(objective_, linear_solver_, displacement_, options, observer);
+        const SolveReport<Scalar> report =
+            minimise(objective_, linear_solver_, displacement_, options, observer, workspace_);
         for (const std::int32_t v : prescribed().free_vertices()) {
             x.col(v) = rest_positions_.col(v) + displacement_.col(v);
         }
@@ -144,6 +146,7 @@ private:
     Convexified<HingeBending<Measure>> convex_bending_{bending_};
     Objective<ExecutorType, Elastic, Convexified<EdgeStretch<Scalar>>, Convexified<HingeBending<Measure>>> objective_;
     LinearSolver linear_solver_;
+    NewtonWorkspace<Scalar> workspace_;
     Matrix3X<Scalar> displacement_;
 };
 

@@ -12,7 +12,7 @@
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
 ///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
 ///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
-/// Cost        no allocation after the first iteration
+/// Cost        no allocation after the first iteration, nor in any with the NewtonWorkspace of a former solve
 /// Refuses     nothing: outcomes are in the SolveReport.
 /// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter), 2024b (adaptive filter); Nolte et al. 2026, sec. 3.2
 /// Tests       tests/unit/solver/newton_test.cpp, tests/scenario/static_solve_test.cpp
@@ -23,7 +23,7 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/solver/concepts.hpp>
-#include <softtissue/solver/limited_memory_bfgs.hpp>
+#include <softtissue/solver/newton_workspace.hpp>
 #include <softtissue/solver/report.hpp>
 
 #include <algorithm>
@@ -48,23 +48,6 @@ struct NewtonOptions {
     int quasi_newton_steps = 0;  ///< after each iteration, where the linear solver keeps its factor
 };
 
-/// What an observer sees before each iteration; it returns false to cancel.
-template <RealScalar S>
-struct NewtonProgress {
-    int iteration;
-    S energy;
-    S residual;
-    S step;
-};
-
-/// Watches nothing and never cancels.
-struct NoObserver {
-    template <class Progress>
-    bool operator()(const Progress&) const {
-        return true;
-    }
-};
-
 namespace detail {
 
 /// One Newton solve; see minimise().
@@ -74,12 +57,20 @@ public:
     using Scalar = typename ObjectiveType::Scalar;
 
     NewtonIteration(ObjectiveType& objective, LinearSolver& linear_solver, Matrix3X<Scalar>& d,
-                    const NewtonOptions<Scalar>& options, const Observer& observer)
-        : objective_(objective), linear_solver_(linear_solver), d_(d), options_(options), observer_(observer) {}
+                    const NewtonOptions<Scalar>& options, const Observer& observer, NewtonWorkspace<Scalar>& workspace)
+        : objective_(objective),
+          linear_solver_(linear_solver),
+          d_(d),
+          options_(options),
+          observer_(observer),
+          w_(workspace) {
+        w_.memory.clear();
+    }
 
     SolveReport<Scalar> run() {
-        report_.energy = energy_at(d_);
+        report_.energy = energy_and_gradient_at(d_);
         refresh_gradient();
+        w_.last_gradient = w_.trial_gradient = w_.gradient;  // room for the next ones
         if (!std::isfinite(report_.energy) || !std::isfinite(report_.residual)) {
             return ended(SolveStatus::not_finite);
         }
@@ -99,8 +90,8 @@ public:
             }
             const Scalar last_residual = report_.residual;
             const Scalar last_energy = report_.energy;
-            const Scalar step = direction_.cwiseAbs().maxCoeff();
-            report_.decrement = -gradient_.dot(direction_) / Scalar(2);
+            const Scalar step = w_.direction.cwiseAbs().maxCoeff();
+            report_.decrement = -w_.gradient.dot(w_.direction) / Scalar(2);
             const StepOutcome outcome = take_step();
             if (outcome == StepOutcome::none) {
                 return ended(SolveStatus::line_search_stalled);
@@ -136,19 +127,36 @@ private:
 
     Scalar energy_at(const Matrix3X<Scalar>& d) {
         ++report_.energy_evaluations;
+        has_trial_gradient_ = false;
         return objective_.energy(d);
     }
 
+    /// With the gradient, where the objective has both for less than one after the other.
+    Scalar energy_and_gradient_at(const Matrix3X<Scalar>& d) {
+        if constexpr (requires { objective_.energy_and_gradient(d, w_.trial_gradient); }) {
+            ++report_.energy_evaluations;
+            has_trial_gradient_ = true;
+            return objective_.energy_and_gradient(d, w_.trial_gradient);
+        }
+        return energy_at(d);
+    }
+
+    /// At d, where the energy was evaluated last.
     void refresh_gradient() {
-        last_gradient_.swap(gradient_);
-        gradient_ = objective_.gradient(d_);
+        w_.last_gradient.swap(w_.gradient);
+        if (has_trial_gradient_) {
+            w_.gradient.swap(w_.trial_gradient);
+        } else {
+            w_.gradient = objective_.gradient(d_);
+        }
         // maxCoeff skips NaN on some paths; the sum does not
-        report_.residual =
-            std::isfinite(gradient_.sum()) && gradient_.size() > 0 ? gradient_.cwiseAbs().maxCoeff() : gradient_.sum();
+        report_.residual = std::isfinite(w_.gradient.sum()) && w_.gradient.size() > 0
+                               ? w_.gradient.cwiseAbs().maxCoeff()
+                               : w_.gradient.sum();
     }
 
     bool find_direction() {
-        rhs_ = -gradient_;
+        w_.rhs = -w_.gradient;
         hessian_ = HessianKind::filtered;
         if (filtered_ahead_ == 0) {
             hessian_ = solve_with(PsdFilter::none) ? HessianKind::exact : HessianKind::indefinite;
@@ -180,16 +188,17 @@ private:
 
     bool solve_with(PsdFilter filter) {
         const LinearSolveResult result = linear_solver_.solve(
-            objective_.hessian(d_, filter), rhs_, options_.linear_tolerance, direction_, objective_.executor());
+            objective_.hessian(d_, filter), w_.rhs, options_.linear_tolerance, w_.direction, objective_.executor());
         report_.linear_iterations += result.iterations;
-        return result.is_positive_definite && std::isfinite(direction_.sum()) && gradient_.dot(direction_) <= Scalar(0);
+        return result.is_positive_definite && std::isfinite(w_.direction.sum()) &&
+               w_.gradient.dot(w_.direction) <= Scalar(0);
     }
 
     void remember_step() {
         if (options_.quasi_newton_steps > 0) {
-            direction_ *= length_;
-            last_gradient_ = gradient_ - last_gradient_;
-            memory_.remember(direction_, last_gradient_);
+            w_.direction *= length_;
+            w_.last_gradient = w_.gradient - w_.last_gradient;
+            w_.memory.remember(w_.direction, w_.last_gradient);
         }
     }
 
@@ -200,8 +209,8 @@ private:
         };
         Scalar decrease = least_decrease;
         for (int k = 0; k < options_.quasi_newton_steps && decrease >= least_decrease; ++k) {
-            memory_.direction_into(gradient_, solve_again, direction_);
-            const Scalar promised = -gradient_.dot(direction_) / Scalar(2);
+            w_.memory.direction_into(w_.gradient, solve_again, w_.direction);
+            const Scalar promised = -w_.gradient.dot(w_.direction) / Scalar(2);
             if (promised <= options_.decrement_tolerance) {
                 filtered_ahead_ = 0;
                 return;
@@ -223,21 +232,21 @@ private:
     }
 
     StepOutcome take_step() {
-        const Scalar slope = gradient_.dot(direction_);
+        const Scalar slope = w_.gradient.dot(w_.direction);
         const Scalar sufficient_decrease = Scalar(1e-4);
         Scalar length(1);
         for (int halving = 0; halving <= options_.max_halvings; ++halving, length *= Scalar(0.5)) {
-            trial_ = d_;
-            objective_.prescribed().add_into(direction_, length, trial_);
-            const Scalar energy = energy_at(trial_);
+            w_.trial = d_;
+            objective_.prescribed().add_into(w_.direction, length, w_.trial);
+            const Scalar energy = halving == 0 ? energy_and_gradient_at(w_.trial) : energy_at(w_.trial);
             const bool is_resolved = -length * slope > energy_resolution();
             if (energy <= report_.energy + sufficient_decrease * length * slope +
                               (is_resolved ? Scalar(0) : energy_resolution())) {
-                d_.swap(trial_);
+                d_.swap(w_.trial);
                 predicted_ratio_ = (energy - report_.energy) / (slope * (length - length * length / Scalar(2)));
                 report_.energy = energy;
                 length_ = length;
-                report_.step = length * direction_.cwiseAbs().maxCoeff();
+                report_.step = length * w_.direction.cwiseAbs().maxCoeff();
                 return is_resolved ? StepOutcome::decreased : StepOutcome::below_resolution;
             }
         }
@@ -255,23 +264,32 @@ private:
     int filtered_ahead_ = std::isfinite(options_.far_step) ? 1 : 0;
     Scalar predicted_ratio_ = Scalar(0);  // actual over predicted decrease of the last step
     Scalar length_ = Scalar(0);           // of the last step, in directions
-    VectorX<Scalar> gradient_, last_gradient_, rhs_, direction_;
-    Matrix3X<Scalar> trial_;
-    LimitedMemoryBfgs<Scalar> memory_;
+    bool has_trial_gradient_ = false;
+    NewtonWorkspace<Scalar>& w_;
 };
 
 }  // namespace detail
 
 /// Minimises `objective` over the free columns of `d`, 3 x vertices [m], starting from d; the prescribed columns are given.
 /// d is left at the best accepted point whatever the status.
+template <class ObjectiveType, NewtonLinearSolver LinearSolver, class Observer>
+SolveReport<typename ObjectiveType::Scalar> minimise(ObjectiveType& objective, LinearSolver& linear_solver,
+                                                     Matrix3X<typename ObjectiveType::Scalar>& d,
+                                                     const NewtonOptions<typename ObjectiveType::Scalar>& options,
+                                                     const Observer& observer,
+                                                     NewtonWorkspace<typename ObjectiveType::Scalar>& workspace) {
+    using Iteration = detail::NewtonIteration<ObjectiveType, LinearSolver, Observer>;
+    return Iteration(objective, linear_solver, d, options, observer, workspace).run();
+}
+
+/// The same in memory of its own.
 template <class ObjectiveType, NewtonLinearSolver LinearSolver, class Observer = NoObserver>
 SolveReport<typename ObjectiveType::Scalar> minimise(ObjectiveType& objective, LinearSolver& linear_solver,
                                                      Matrix3X<typename ObjectiveType::Scalar>& d,
                                                      const NewtonOptions<typename ObjectiveType::Scalar>& options = {},
                                                      const Observer& observer = {}) {
-    return detail::NewtonIteration<ObjectiveType, LinearSolver, Observer>(objective, linear_solver, d, options,
-                                                                          observer)
-        .run();
+    NewtonWorkspace<typename ObjectiveType::Scalar> workspace;
+    return minimise(objective, linear_solver, d, options, observer, workspace);
 }
 
 }  // namespace softtissue

@@ -3,6 +3,7 @@
 /// How a solve ended: a value, never an exception.
 ///
 /// What        status, counts, energy and residual of a Newton solve; the state is left at the best accepted point.
+///             NewtonProgress: what is told on the way.
 /// Units       energy J, residual N (largest gradient component on free vertices), step m (largest component)
 /// Tests       tests/unit/solver/report_test.cpp
 #pragma once
@@ -55,6 +56,23 @@ struct [[nodiscard]] SolveReport {
 
     /// The state is a minimum as far as tolerances and precision tell.
     bool succeeded() const { return status == SolveStatus::converged || status == SolveStatus::precision_limit; }
+};
+
+/// What an observer sees before each iteration; it returns false to cancel.
+template <RealScalar S>
+struct NewtonProgress {
+    int iteration;
+    S energy;
+    S residual;
+    S step;
+};
+
+/// Watches nothing and never cancels.
+struct NoObserver {
+    template <class Progress>
+    bool operator()(const Progress&) const {
+        return true;
+    }
 };
 
 }  // namespace softtissue
