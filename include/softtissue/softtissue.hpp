@@ -57,6 +57,7 @@
 #include <softtissue/element/concepts.hpp>
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
+#include <softtissue/energy/angle_curvature.hpp>
 #include <softtissue/energy/concepts.hpp>
 #include <softtissue/energy/convexified.hpp>
 #include <softtissue/energy/dead_load.hpp>
@@ -224,6 +225,7 @@
 #include <softtissue/solver/local_global.hpp>
 #include <softtissue/solver/metric_cg.hpp>
 #include <softtissue/solver/newton.hpp>
+#include <softtissue/solver/newton_workspace.hpp>
 #include <softtissue/solver/objective.hpp>
 #include <softtissue/solver/poisson_reconstruction.hpp>
 #include <softtissue/solver/quasi_newton.hpp>
