@@ -92,7 +92,7 @@ public:
             for (int i = 0; i < 3; ++i) {
                 const Scalar e_i = edges_(i, 0), a_i = edges_(i, 1), b_i = edges_(i, 2);
                 const Scalar e_j = edges_(j, 0), a_j = edges_(j, 1), b_j = edges_(j, 2);
-                const Scalar one(i == j ? 1 : 0);
+                const Scalar one = i == j ? Scalar(1) : Scalar(0);
                 H(i, j) = cosine * (a_i * b_j + b_i * a_j) - first * (a_i * a_j) - second * (b_i * b_j) + one * corner;
                 H(3 + i, 3 + j) = first * (one * ee - e_i * e_j);
                 H(6 + i, 6 + j) = second * (one * ee - e_i * e_j);
