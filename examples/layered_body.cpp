@@ -4,8 +4,10 @@
 // A layered anatomical body in many poses: the quasi-static reference beside the methods that avoid its cost
 // (Nolte et al. 2026, tables 1 and 3, fig. 9).
 #include "layered_body/figures.hpp"
+#include "layered_body/report.hpp"
 #include "support/embedded_human.hpp"
 #include "support/layered_pictures.hpp"
+#include "support/layered_report.hpp"
 #include "support/posing_methods.hpp"
 #include "support/progress.hpp"
 
@@ -83,6 +85,12 @@ int run_program(const Settings& settings) {
     for (const std::string& name : settings.methods) {
         figures.methods.push_back({.name = name});
     }
+    LayeredReport report_page({.program = "layered_body",
+                               .title = "Layers of a posed body: bone, muscle, fat",
+                               .summary = (settings.files.body.empty() ? "The embedded body" : settings.files.body) +
+                                          std::string(" in poses of a motion, by several methods"),
+                               .has_motion = false},
+                              scene, settings.methods, figures.has_reference, Index(poses.size()));
     std::vector<Shot> worst;
     double worst_change = -1.0;
     Progress progress("posing", int(poses.size() * settings.methods.size()));
@@ -91,6 +99,7 @@ int run_program(const Settings& settings) {
         Matrix3X<Scalar> x, reference;
         std::vector<Shot> shots;
         double change = 0.0;
+        report_page.begin_frame(double(figures.poses + 1), "pose " + std::to_string(figures.poses + 1));
         for (size_t k = 0; k < settings.methods.size() && !is_interrupted(); ++k) {
             const AnimationMethod method = method_of(settings.methods[k]);
             const double begin = seconds();
@@ -109,6 +118,7 @@ int run_program(const Settings& settings) {
             add_pose(figures.methods[k], scene, methods.poisson().rest(), methods.poisson().prescribed(),
                      x, figures.has_reference ? &reference : nullptr, report, frame, milliseconds);
             animation.add(k, frame);
+            report_page.add(k, frame, x, figures.has_reference ? &reference : nullptr);
             shots.push_back(make_shot(settings.methods[k], scene, x, std::move(frame)));
             change = std::max(change, shots.back().mean_change);
             progress.update(int(size_t(figures.poses) * settings.methods.size() + k) + 1);
@@ -132,6 +142,10 @@ int run_program(const Settings& settings) {
         animation.write(folder / "layered_body.glb");
         write_comparison(folder / "methods.png", scene, worst, "Local volume change in the pose that changes most");
         std::printf("  %s\n  %s\n", (folder / "layered_body.glb").c_str(), (folder / "methods.png").c_str());
+        add_figures(report_page.page(), figures, scene);
+        if (report_page.page().write(folder / "report.html")) {
+            std::printf("  %s\n", (folder / "report.html").c_str());
+        }
     }
     return 0;
 }

@@ -3,6 +3,7 @@
 //
 // A patch of skin, pulled off its bone by hanging weights from 20 g to 2 kg (Romero et al. 2020, fig. 5): Fung-orthotropic skin against
 // stable neo-Hookean flesh of the same stiffness under small loads.
+#include "support/html_report.hpp"
 #include "support/mesh_picture.hpp"
 
 #include <softtissue/element/prism6.hpp>
@@ -24,6 +25,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace softtissue;
@@ -36,6 +38,7 @@ constexpr double poisson_ratio = 0.2;
 /// A square of skin, `columns` boxes along each side, on a bone that does not move; a weight hangs from a disc in its middle.
 struct Patch {
     PrismLayers layers;
+    Triangles triangles;  // of columns
     CellMesh<Prism6, double> mesh;
     std::vector<std::int32_t> bone;
     VectorX<double> share;  // of the weight, per vertex
@@ -43,7 +46,7 @@ struct Patch {
     explicit Patch(int columns) {
         const auto column = [columns](int x, int y) { return std::int32_t(x * (columns + 1) + y); };
         layers = {Index(columns + 1) * (columns + 1), 4};
-        Triangles triangles(3, 2 * columns * columns);
+        triangles.resize(3, 2 * columns * columns);
         Index t = 0;
         for (int x = 0; x < columns; ++x) {
             for (int y = 0; y < columns; ++y) {
@@ -65,9 +68,14 @@ struct Patch {
         share /= share.sum();
     }
 
+    /// The skin's own vertices, for pictures.
+    Matrix3X<double> skin(const Matrix3X<double>& x) const { return layers.level_positions(x, layers.num_layers); }
+
     /// How far the disc is pulled out [m] for each of the `weights` [kg], ascending; every solve starts from the last one.
+    /// `shapes`, if it is there, receives the displaced vertices.
     template <class Material>
-    std::vector<double> pulls(const Material& material, const std::vector<double>& weights) const {
+    std::vector<double> pulls(const Material& material, const std::vector<double>& weights,
+                              std::vector<Matrix3X<double>>* shapes = nullptr) const {
         ElasticEnergy<Prism6, UniformField<Material>> elastic(mesh, {material});
         DeadLoad<double> load(Matrix3X<double>::Zero(3, mesh.num_vertices()));
         const SequentialExecutor executor;
@@ -82,6 +90,9 @@ struct Patch {
             const SolveReport<double> report = minimise(objective, linear_solver, d, {.max_iterations = 200});
             require(report.succeeded(), "patch with ", weight, " kg: ", to_string(report.status));
             result.push_back(d.row(2).dot(share));
+            if (shapes != nullptr) {
+                shapes->push_back(mesh.rest_positions + d);
+            }
         }
         return result;
     }
@@ -121,6 +132,72 @@ void plot(const std::filesystem::path& path, const std::vector<double>& weights,
     picture.write(path);
 }
 
+/// One material under all weights.
+struct Response {
+    std::string name;
+    std::vector<double> pulls;  // [m]
+    std::vector<Matrix3X<double>> shapes;
+};
+
+bool write_report(const std::filesystem::path& path, const Patch& patch, const std::vector<double>& weights,
+                  const std::vector<Response>& responses, double fitted_modulus) {
+    examples::HtmlReport page({.program = "material_response",
+                               .title = "A weight hangs from a patch of skin",
+                               .summary = "Fung-orthotropic skin beside stable neo-Hookean flesh of the same stiffness under "
+                                          "small loads: skin stiffens, flesh does not",
+                               .has_motion = false,
+                               .has_ground = false,
+                               .up = 'z'});
+    const double farthest = std::max(responses[0].pulls.back(), responses[1].pulls.back());
+    const Index field = page.add_field({.name = "displacement",
+                                        .unit = "mm",
+                                        .note = "Distance from the place at rest",
+                                        .low = 0.0,
+                                        .high = 5.0 * std::ceil(1e3 * farthest / 5.0),
+                                        .is_open = true});
+    const Index layer = page.add_layer({.name = "Skin", .key = 's', .color = {0.80F, 0.78F, 0.75F}});
+    const Index bone = page.add_layer({.name = "Bone", .key = 'b', .color = {0.90F, 0.86F, 0.74F}});
+    examples::LineChart chart{.title = "How far the weight pulls", .x_title = "weight [kg]", .y_title = "pull of the disc [mm]"};
+    examples::ReportTable table{.title = "Pull of the disc", .columns = {{"Weight", "kg", 2}}};
+    std::vector<Index> skins, bones;
+    for (const Response& response : responses) {
+        const Index view = page.add_view({.name = response.name});
+        skins.push_back(page.add_mesh({.view = view, .layer = layer, .triangles = patch.triangles}));
+        bones.push_back(page.add_mesh({.view = view, .layer = bone, .triangles = patch.triangles}));
+        examples::LineSeries& series = chart.series.emplace_back();
+        series.name = response.name;
+        table.columns.push_back({response.name, "mm", 2});
+    }
+    for (size_t i = 0; i < weights.size(); ++i) {
+        page.add_frame(weights[i], examples::formatted("%.2f kg", weights[i]));
+        examples::ReportRow row{.cells = {weights[i]}};
+        for (size_t k = 0; k < responses.size(); ++k) {
+            const Matrix3X<double>& x = responses[k].shapes[i];
+            page.set_positions(skins[k], patch.skin(x).cast<float>());
+            page.set_positions(bones[k], Matrix3X<double>(patch.layers.level_positions(x, 0)).cast<float>());
+            page.set_values(skins[k], field,
+                            (1e3 * (patch.skin(x) - patch.skin(patch.mesh.rest_positions)).colwise().norm()).cast<float>());
+            chart.series[k].x.push_back(weights[i]);
+            chart.series[k].y.push_back(1e3 * responses[k].pulls[i]);
+            row.cells.emplace_back(1e3 * responses[k].pulls[i]);
+        }
+        table.rows.push_back(std::move(row));
+    }
+    page.set_poster(Index(weights.size()) - 1);
+    page.add_figure({.name = "Patch",
+                     .value = examples::formatted("%.0f", 1e3 * side) + examples::formatted(" × %.0f", 1e3 * side),
+                     .unit = "mm",
+                     .note = examples::formatted("%.0f mm thick", 1e3 * thickness)});
+    page.add_figure({.name = "Prisms", .value = std::to_string(patch.mesh.num_cells())});
+    page.add_figure({.name = "Young's modulus of the flesh",
+                     .value = examples::formatted("%.0f", fitted_modulus),
+                     .unit = "Pa",
+                     .note = "fits the skin under small loads"});
+    page.add_chart(chart, examples::ChartKind::over_frames);
+    page.add_table(std::move(table));
+    return page.write(path);
+}
+
 int run(const std::string& out, int columns) {
     const Patch patch(columns);
     Matrix3<double> basis;  // first column: the skin's normal, here z
@@ -136,8 +213,11 @@ int run(const std::string& out, int columns) {
         trial_modulus * patch.pulls(flesh_of(trial_modulus), small)[0] / patch.pulls(fung, small)[0];
 
     std::vector<double> weights{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0};
-    const std::vector<double> fung_pulls = patch.pulls(fung, weights);
-    const std::vector<double> flesh_pulls = patch.pulls(flesh_of(fitted_modulus), weights);
+    std::vector<Response> responses{{"Fung-orthotropic", {}, {}}, {"Stable neo-Hookean", {}, {}}};
+    responses[0].pulls = patch.pulls(fung, weights, &responses[0].shapes);
+    responses[1].pulls = patch.pulls(flesh_of(fitted_modulus), weights, &responses[1].shapes);
+    const std::vector<double>& fung_pulls = responses[0].pulls;
+    const std::vector<double>& flesh_pulls = responses[1].pulls;
     std::printf("skin patch of %.0f x %.0f mm, %.0f mm thick, %d prisms; neo-Hookean E = %.0f Pa fits the small-load stiffness\n\n"
                 "weight [kg]   Fung [mm]   neo-Hookean [mm]\n",
                 1e3 * side, 1e3 * side, 1e3 * thickness, int(patch.mesh.num_cells()), fitted_modulus);
@@ -149,6 +229,9 @@ int run(const std::string& out, int columns) {
     std::filesystem::create_directories(out);
     plot(std::filesystem::path(out) / "material_response.png", weights, fung_pulls, flesh_pulls);
     std::printf("plot in %s/material_response.png\n", out.c_str());
+    if (write_report(std::filesystem::path(out) / "report.html", patch, weights, responses, fitted_modulus)) {
+        std::printf("report in %s/report.html\n", out.c_str());
+    }
     return 0;
 }
 
@@ -158,7 +241,7 @@ int main(int argc, char** argv) {
     std::string out = "material_response";
     int columns = 20;
     CLI::App app("Skin pulled by a weight: Fung-orthotropic against stable neo-Hookean (Romero et al. 2020, fig. 5).");
-    app.add_option("--out", out, "folder for the plot")->capture_default_str();
+    app.add_option("--out", out, "folder for plot and report")->capture_default_str();
     app.add_option("--columns", columns, "boxes along a side of the patch")->check(CLI::Range(4, 60))->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {

@@ -3,6 +3,7 @@
 //
 // Carries a motion capture clip over to a body: rotations are copied, the feet stand where the performer's feet stood.
 #include "retarget_motion/inputs.hpp"
+#include "retarget_motion/report.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/io/amass_file.hpp>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <exception>
+#include <filesystem>
 #include <map>
 
 namespace {
@@ -65,6 +67,10 @@ int run_program(const Settings& settings) {
         AtomicFile file(settings.json);
         file.write(json.dump(2) + "\n");
         file.commit();
+    }
+    const std::filesystem::path page = std::filesystem::path(settings.out).replace_extension(".html");
+    if (write_report(page, {settings.body, clip, retarget, map, body.skeleton, result.motion, report})) {
+        std::printf("%s\n", page.c_str());
     }
     return report.not_converged == 0 ? 0 : 1;
 }

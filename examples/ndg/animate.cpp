@@ -3,11 +3,11 @@
 
 #include "../support/embedded_human.hpp"
 #include "../support/layered_pictures.hpp"
+#include "../support/layered_report.hpp"
 #include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
 #include "inputs.hpp"
 
-#include <softtissue/metric/volume_change.hpp>
 #include <softtissue/ndg/network_input.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
@@ -79,8 +79,12 @@ void animate(const Settings& settings) {
 
     const Index num_shots = std::min<Index>(settings.shots, frames.count);
     Animation animation(scene, {model.name}, motion.frame_rate / double(frames.stride));
+    LayeredReport report({.program = "ndg animate",
+                          .title = "A body in motion by a trained network",
+                          .summary = model.name + " from " + settings.model + ": skin, muscles and bones"},
+                         scene, {model.name}, false, frames.count);
     std::vector<Shot> shots;
-    std::vector<double> milliseconds;
+    std::vector<double> times, milliseconds, inverted, changes;
     Index most_inverted = 0;
     Matrix3X<Scalar> x;
     Progress progress("animating", int(frames.count));
@@ -90,9 +94,15 @@ void animate(const Settings& settings) {
         const double begin = seconds();
         network.pose_into(pose, transforms, x);
         milliseconds.push_back(1e3 * (seconds() - begin));
-        most_inverted = std::max(most_inverted, volume_change(layered.mesh, x).num_inverted);
+        const ColumnChange change = column_change(scene, x);
+        most_inverted = std::max(most_inverted, change.num_inverted);
+        times.push_back(double(k * frames.stride) / motion.frame_rate);
+        inverted.push_back(double(change.num_inverted));
+        changes.push_back(100.0 * change.root_mean_square);
         Scene::Frame frame = scene.frame(pose, x);
         animation.add(0, frame);
+        report.begin_frame(times.back());
+        report.add(0, frame, x, nullptr);
         if (k == (Index(shots.size()) * 2 + 1) * frames.count / (2 * num_shots)) {
             char label[32];
             std::snprintf(label, sizeof label, "%.2f s", double(k * frames.stride) / motion.frame_rate);
@@ -102,18 +112,43 @@ void animate(const Settings& settings) {
     }
     require(!milliseconds.empty(), "interrupted before the first frame");
     animation.write(settings.out);
-    std::nth_element(milliseconds.begin(), milliseconds.begin() + std::ptrdiff_t(milliseconds.size() / 2),
-                     milliseconds.end());
+    std::vector<double> sorted = milliseconds;
+    std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2), sorted.end());
+    const double median = sorted[sorted.size() / 2];
     std::printf(
         "%d frames%s, %.1f ms a frame (median: network, reconstruction), at most %d of %d cells inverted\n  %s\n",
-        int(milliseconds.size()), is_interrupted() ? " until the interruption" : "",
-        milliseconds[milliseconds.size() / 2], int(most_inverted), int(layered.mesh.num_cells()), settings.out.c_str());
+        int(milliseconds.size()), is_interrupted() ? " until the interruption" : "", median, int(most_inverted),
+        int(layered.mesh.num_cells()), settings.out.c_str());
     if (!shots.empty()) {
         const std::filesystem::path picture = settings.picture.empty()
                                                   ? std::filesystem::path(settings.out).replace_extension(".png")
                                                   : std::filesystem::path(settings.picture);
         write_comparison(picture, scene, shots, model.name + ": local volume change; bones and muscles below");
         std::printf("  %s\n", picture.c_str());
+    }
+    HtmlReport& page = report.page();
+    page.add_figure({.name = "Frames", .value = std::to_string(milliseconds.size())});
+    page.add_figure({.name = "Time a frame",
+                     .value = formatted("%.1f", median),
+                     .unit = "ms",
+                     .note = "median: network, reconstruction"});
+    page.add_figure({.name = "Inverted cells, at most",
+                     .value = std::to_string(most_inverted),
+                     .note = "of " + std::to_string(layered.mesh.num_cells())});
+    page.add_figure({.name = "Weights",
+                     .value = settings.weights,
+                     .note = std::to_string(model.mlp.parameters().size()) + " numbers"});
+    const auto add_chart = [&](const char* title, const char* y_title, const char* name, std::vector<double> values) {
+        page.add_chart(
+            {.title = title, .x_title = "time [s]", .y_title = y_title, .series = {{name, times, std::move(values)}}},
+            ChartKind::over_frames);
+    };
+    add_chart("Time a frame", "time [ms]", "network and reconstruction", milliseconds);
+    add_chart("Change of volume", "root mean square [%]", "all cells", changes);
+    add_chart("Inverted cells", "count", "all cells", inverted);
+    const std::filesystem::path html = std::filesystem::path(settings.out).replace_extension(".html");
+    if (page.write(html)) {
+        std::printf("  %s\n", html.c_str());
     }
 }
 

@@ -4,6 +4,7 @@
 #include "../support/embedded_human.hpp"
 #include "../support/progress.hpp"
 #include "error_picture.hpp"
+#include "evaluation_report.hpp"
 #include "evaluation_run.hpp"
 #include "evaluation_tables.hpp"
 #include "inputs.hpp"
@@ -62,8 +63,7 @@ EvaluationSetup read_setup(const Settings& settings, const DatasetFolder& data) 
 }
 
 /// The models of table 1; without any, the classical methods.
-void write_pictures(const Settings& settings, const DatasetFolder& data, const EvaluationSetup& setup,
-                    const SplitResult& split) {
+std::vector<ErrorMap> error_maps(const EvaluationSetup& setup, const SplitResult& split) {
     std::vector<ErrorMap> maps;
     const auto add = [&](const std::string& name) {
         const MethodEvaluation<double>& evaluation = split.find(name)->evaluation;
@@ -80,11 +80,20 @@ void write_pictures(const Settings& settings, const DatasetFolder& data, const E
             add(name);
         }
     }
+    return maps;
+}
+
+ErrorSurface error_surface(const Settings& settings, const DatasetFolder& data) {
+    return settings.body.empty() ? layered_surface(data.mean_body())
+                                 : whole_surface(data.mean_body(), read_human(settings.body));
+}
+
+void write_pictures(const Settings& settings, const ErrorSurface& surface, const EvaluationSetup& setup,
+                    const SplitResult& split) {
+    const std::vector<ErrorMap> maps = error_maps(setup, split);
     if (maps.empty()) {
         return;
     }
-    const ErrorSurface surface = settings.body.empty() ? layered_surface(data.mean_body())
-                                                       : whole_surface(data.mean_body(), read_human(settings.body));
     const std::filesystem::path path =
         std::filesystem::path(settings.out) / ("errors_" + std::string(to_string(split.split)) + ".png");
     const std::string title = "Error of each vertex, " + std::to_string(split.samples.size()) +
@@ -114,10 +123,16 @@ void evaluate(const Settings& settings) {
                                                              : std::filesystem::path(settings.json);
     write_tables(json, data, setup, splits, seconds() - begin);
     std::printf("%s\n  %s\n", is_interrupted() ? "interrupted; results up to there in" : "results in", json.c_str());
+    std::erase_if(splits, [](const SplitResult& split) { return split.samples.empty(); });
+    const ErrorSurface surface = error_surface(settings, data);
+    std::vector<std::vector<ErrorMap>> maps;
     for (const SplitResult& split : splits) {
-        if (!split.samples.empty()) {
-            write_pictures(settings, data, setup, split);
-        }
+        write_pictures(settings, surface, setup, split);
+        maps.push_back(error_maps(setup, split));
+    }
+    const std::filesystem::path page = std::filesystem::path(settings.out) / "report.html";
+    if (write_evaluation_report(page, setup, splits, surface, maps)) {
+        std::printf("  %s\n", page.c_str());
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation_run.hpp"
 
+#include "../support/column_errors.hpp"
 #include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
 
@@ -85,12 +86,7 @@ private:
         MeasuredPose result;
         result.figures = measure_pose(body_.layered.mesh, poisson.rest(), poisson.prescribed(), x, reference);
         result.figures.milliseconds = milliseconds;
-        const VectorX<double> errors = vertex_errors(x, reference);
-        result.column_errors.resize(body_.layered.num_columns());
-        for (Index c = 0; c < body_.layered.num_columns(); ++c) {
-            result.column_errors(c) =
-                0.5 * (errors(body_.layered.layers.vertex(c, 1)) + errors(body_.layered.layers.vertex(c, 2)));
-        }
+        result.column_errors = column_errors(body_.layered, x, reference);
         return result;
     }
 

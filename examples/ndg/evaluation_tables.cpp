@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace examples {
 
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 struct Metric {
     const char* key;
     const char* title;
+    const char* unit;
     double scale;  // from SI to the tables' unit
     double json_scale;
     int digits;
@@ -38,15 +40,15 @@ FigureSummary difference_of(const MethodEvaluation<double>& a, const MethodEvalu
 }
 
 template <auto figure>
-Metric metric(const char* key, const char* title, double scale, double json_scale, int digits) {
-    return {key, title, scale, json_scale, digits, summary_of<figure>, difference_of<figure>};
+Metric metric(const char* key, const char* title, const char* unit, double scale, double json_scale, int digits) {
+    return {key, title, unit, scale, json_scale, digits, summary_of<figure>, difference_of<figure>};
 }
 
 using Figures = PoseFigures<double>;
-const std::array<Metric, 4> metrics{metric<&Figures::position>("E_pos_mm", "E_pos mm", 1e3, 1e3, 3),
-                                    metric<&Figures::gradient>("E_grad", "E_grad 1e-3", 1e3, 1.0, 3),
-                                    metric<&Figures::inverted>("E_inv", "E_inv cells", 1.0, 1.0, 2),
-                                    metric<&Figures::volume>("E_vol", "E_vol 1e-3", 1e3, 1.0, 3)};
+const std::array<Metric, 4> metrics{metric<&Figures::position>("E_pos_mm", "E_pos", "mm", 1e3, 1e3, 3),
+                                    metric<&Figures::gradient>("E_grad", "E_grad", "1e-3", 1e3, 1.0, 3),
+                                    metric<&Figures::inverted>("E_inv", "E_inv", "cells", 1.0, 1.0, 2),
+                                    metric<&Figures::volume>("E_vol", "E_vol", "1e-3", 1e3, 1.0, 3)};
 
 /// The methods of a table that were evaluated, in the table's order.
 std::vector<const MethodResult*> rows(const SplitResult& split, const std::vector<std::string>& names) {
@@ -84,7 +86,7 @@ void print_table(const std::string& title, const SplitResult& split, const std::
     std::printf("\n%s: %d samples, %d bodies; mean and its standard error, * the best\n%-16s", title.c_str(),
                 int(split.samples.size()), int(split.num_bodies), "");
     for (const Metric& metric : metrics) {
-        std::printf("%19s", metric.title);
+        std::printf("%19s", (std::string(metric.title) + " " + metric.unit).c_str());
     }
     std::printf("%10s\n", "ms");
     for (const MethodResult* method : methods) {
@@ -134,6 +136,31 @@ void print_ratios(const std::vector<const MethodResult*>& methods, const SplitRe
         }
         std::printf("\n");
     }
+}
+
+ReportTable report_table(std::string title, const SplitResult& split, const std::vector<const MethodResult*>& methods) {
+    ReportTable result{.title = std::move(title),
+                       .note = std::to_string(split.samples.size()) + " samples, " + std::to_string(split.num_bodies) +
+                               " bodies; means and their standard errors",
+                       .columns = {{"Method"}}};
+    for (const Metric& metric : metrics) {
+        result.columns.push_back({metric.title, metric.unit, metric.digits, BestValue::low});
+        result.columns.push_back({"±", metric.unit, metric.digits});
+    }
+    result.columns.push_back({"Time", "ms", 1, BestValue::low});
+    result.columns.push_back({"Not converged", "poses", 0});
+    for (const MethodResult* method : methods) {
+        ReportRow row{.cells = {method->name}, .is_reference = method->name == "fem"};
+        for (const Metric& metric : metrics) {
+            const FigureSummary summary = metric.summary(method->evaluation);
+            row.cells.emplace_back(metric.scale * summary.mean);
+            row.cells.emplace_back(metric.scale * summary.standard_error);
+        }
+        row.cells.emplace_back(method->evaluation.summary(&Figures::milliseconds).mean);
+        row.cells.emplace_back(double(method->not_converged));
+        result.rows.push_back(std::move(row));
+    }
+    return result;
 }
 
 Json number(double value) {
@@ -191,6 +218,24 @@ TableMembers table_members(const EvaluationSetup& setup) {
         members.table2.push_back(name);
     }
     return members;
+}
+
+std::vector<ReportTable> report_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& splits) {
+    const TableMembers members = table_members(setup);
+    std::vector<ReportTable> tables;
+    const SplitResult* test = find_split(splits, false);
+    if (test != nullptr) {
+        tables.push_back(
+            report_table(std::string("Split '") + to_string(test->split) + "'", *test, rows(*test, members.table1)));
+    }
+    if (const SplitResult* outliers = find_split(splits, true)) {
+        tables.push_back(
+            report_table("Bodies far from those of the training", *outliers, rows(*outliers, members.table2)));
+    }
+    if (test != nullptr && members.table4.size() > 1) {
+        tables.push_back(report_table("Parts of the method taken away", *test, rows(*test, members.table4)));
+    }
+    return tables;
 }
 
 void print_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& splits) {

@@ -3,6 +3,7 @@
 /// What an evaluation came to: the tables of Nolte et al. 2026 for what was trained, on the terminal and as JSON.
 #pragma once
 
+#include "../support/html_report.hpp"
 #include "evaluation_run.hpp"
 
 #include <filesystem>
@@ -22,6 +23,9 @@ TableMembers table_members(const EvaluationSetup& setup);
 
 /// `splits`: those that were evaluated.
 void print_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& splits);
+
+/// The same tables for a page.
+std::vector<ReportTable> report_tables(const EvaluationSetup& setup, const std::vector<SplitResult>& splits);
 
 /// `table1`, `table2`, `table4`: method -> metric -> mean; `details`: spread and worst, by split; `models`: how they were trained.
 void write_tables(const std::filesystem::path& path, const DatasetFolder& data, const EvaluationSetup& setup,

@@ -197,7 +197,7 @@ private:
                                        body_identity(data_.mean_body(), data_.tree(), data_.joint_names()),
                                        notes_};
         write_neural_model(settings_.out, model);
-        write_loss_chart(settings_.png, settings_.model, stages_);
+        write_loss_chart(settings_.png, loss_chart(settings_.model, stages_));
         write_json(model);
         for (size_t stage = 0; stage < stages_.size(); ++stage) {
             std::filesystem::remove(checkpoint_path(stage));
@@ -208,6 +208,27 @@ private:
         }
         std::printf("%td parameters in %s\n  %s\n  %s\n", mlp.parameters().size(), settings_.out.c_str(),
                     settings_.png.c_str(), settings_.json.c_str());
+        write_page(model);
+    }
+
+    void write_page(const NeuralModel<float>& model) const {
+        const std::string page = std::filesystem::path(settings_.out).replace_extension(".html").string();
+        const TrainingStage& last = stages_.back();
+        std::string layers;
+        for (const Index size : settings_.hidden) {
+            layers += (layers.empty() ? "hidden " : ", ") + std::to_string(size);
+        }
+        if (write_training_report(
+                page, model.name, stages_,
+                {{"Best validation loss", formatted("%.4g", last.best), "", "epoch " + std::to_string(last.best_epoch)},
+                 {"Training samples", std::to_string(num_training_), "",
+                  std::to_string(loaded_.num_bodies) + " bodies"},
+                 {"Validation samples", std::to_string(num_validation_)},
+                 {"Parameters", std::to_string(model.mlp.parameters().size()), "", layers},
+                 {"Batch", std::to_string(settings_.batch), "samples"},
+                 {"Learning rate", formatted("%.2g", settings_.learning_rate), "", "at most"}})) {
+            std::printf("  %s\n", page.c_str());
+        }
     }
 
     void write_json(const NeuralModel<float>& model) const {

@@ -3,11 +3,13 @@
 
 #include "../support/line_chart.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace examples {
 
-void write_loss_chart(const std::string& file, const std::string& model, const std::vector<TrainingStage>& stages) {
+LineChart loss_chart(const std::string& model, const std::vector<TrainingStage>& stages) {
     LineChart chart{
         .title = model + ": loss", .x_title = "epoch", .y_title = "mean loss of a sample", .is_log_y = true};
     double epoch = 0;
@@ -26,7 +28,40 @@ void write_loss_chart(const std::string& file, const std::string& model, const s
         }
         epoch += double(stage.training.size());
     }
+    return chart;
+}
+
+void write_loss_chart(const std::string& file, const LineChart& chart) {
     write_line_chart(file, chart);
+}
+
+bool write_training_report(const std::string& file, const std::string& model, const std::vector<TrainingStage>& stages,
+                           const std::vector<ReportFigure>& figures) {
+    HtmlReport page(
+        {.program = "ndg train",
+         .title = "Training of " + model,
+         .summary =
+             "Losses on the samples of the training and on those of the validation, which it does not learn from"});
+    for (const ReportFigure& figure : figures) {
+        page.add_figure(figure);
+    }
+    page.add_chart(loss_chart(model, stages));
+    ReportTable table{.title = "Stages",
+                      .columns = {{"Stage"},
+                                  {"End"},
+                                  {"Epochs", "", 0},
+                                  {"Best epoch", "", 0},
+                                  {"Best validation loss"},
+                                  {"Training loss there"},
+                                  {"Time", "s", 1}}};
+    for (const TrainingStage& stage : stages) {
+        const size_t best = size_t(std::max<Index>(stage.best_epoch, 1) - 1);
+        table.rows.push_back(
+            {.cells = {stage.name, stage.status, double(stage.training.size()), double(stage.best_epoch), stage.best,
+                       best < stage.training.size() ? stage.training[best] : std::nan(""), stage.seconds}});
+    }
+    page.add_table(std::move(table));
+    return page.write(file);
 }
 
 nlohmann::ordered_json stages_json(const std::vector<TrainingStage>& stages) {

@@ -70,7 +70,7 @@ const comparePositions = (page) => page.evaluate(() => {
 async function check3d(page) {
   const frames = await page.evaluate(() => globalThis.softtissueReport.viewer.clock.count);
   const first = await lookAt(page);
-  assert(first.colors > 20 && first.covered > 0.01, `the 3D view is empty: ${JSON.stringify(first)}`);
+  assert(first.colors > 20 && first.covered > 0.002, `the 3D view is empty: ${JSON.stringify(first)}`);
 
   const { error, step } = await comparePositions(page);
   assert(error <= step, `positions are off by ${error} m, expected at most ${step} m`);
