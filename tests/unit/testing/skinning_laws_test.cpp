@@ -56,9 +56,10 @@ struct Unaligned : DualQuaternion<double> {
         }
         Eigen::Matrix<double, 8, 1> sum = Eigen::Matrix<double, 8, 1>::Zero();
         for (const auto& [joint, weight] : row) {
-            sum += weight * tampered.col(joint);
+            sum += weight * tampered.col(joint).head<8>();
         }
-        MatrixX<double> one = sum / sum.head<4>().norm();
+        MatrixX<double> one(9, 1);
+        one << sum / sum.head<4>().norm(), 1;  // a joint agrees with itself
         const std::vector<JointWeight<double>> alone{{0, 1.0}};
         return DualQuaternion<double>::blend(one, alone);
     }
