@@ -32,10 +32,9 @@ foreach(component IN LISTS softtissue_COMPONENTS)
     endif()
 endforeach()
 
-# Examples, benchmarks and the unit tests of kernels use all instructions of this machine (SOFTTISSUE_NATIVE), other tests those
-# of every machine. With
-# wider vectors Eigen aligns its types otherwise, hence a program must be of one kind throughout: CMake refuses a target
-# that links both softtissue_for_this_machine and softtissue_for_every_machine.
+# Examples, benchmarks and the unit tests of kernels use all instructions of this machine (SOFTTISSUE_NATIVE), other tests
+# those of every machine. With wider vectors Eigen aligns its types otherwise, hence a program must be of one kind
+# throughout: CMake refuses a target that links both softtissue_for_this_machine and softtissue_for_every_machine.
 include(CheckCXXCompilerFlag)
 set(native_default OFF)
 if(NOT CMAKE_CROSSCOMPILING)

@@ -22,12 +22,12 @@
 namespace softtissue {
 
 template <class M>
-concept HyperelasticMaterial = std::copy_constructible<M> &&
-    requires(const M& m, const Matrix3<typename M::Scalar>& F) {
-    { m.energy_density(F) } -> std::same_as<typename M::Scalar>;
-    { m.first_piola(F) } -> std::same_as<Matrix3<typename M::Scalar>>;
-    { m.hessian(F) } -> std::same_as<Matrix9<typename M::Scalar>>;
-};
+concept HyperelasticMaterial =
+    std::copy_constructible<M> && requires(const M& m, const Matrix3<typename M::Scalar>& F) {
+        { m.energy_density(F) } -> std::same_as<typename M::Scalar>;
+        { m.first_piola(F) } -> std::same_as<Matrix3<typename M::Scalar>>;
+        { m.hessian(F) } -> std::same_as<Matrix9<typename M::Scalar>>;
+    };
 
 /// Energy density [J/m^3] and first Piola stress [Pa] at one F.
 template <FieldScalar Scalar>
@@ -37,9 +37,10 @@ struct EnergyAndStress {
 };
 
 template <class M>
-concept HasEnergyAndFirstPiola = HyperelasticMaterial<M> && requires(const M& m, const Matrix3<typename M::Scalar>& F) {
-    { m.energy_and_first_piola(F) } -> std::same_as<EnergyAndStress<typename M::Scalar>>;
-};
+concept HasEnergyAndFirstPiola =
+    HyperelasticMaterial<M> && requires(const M& m, const Matrix3<typename M::Scalar>& F) {
+        { m.energy_and_first_piola(F) } -> std::same_as<EnergyAndStress<typename M::Scalar>>;
+    };
 
 /// Energy density and stress at F.
 template <HyperelasticMaterial M>
@@ -52,10 +53,10 @@ EnergyAndStress<typename M::Scalar> energy_and_first_piola(const M& material, co
 }
 
 template <class M>
-concept HasProjectedHessian = HyperelasticMaterial<M> &&
-    requires(const M& m, const Matrix3<typename M::Scalar>& F, PsdFilter filter) {
-    { m.projected_hessian(F, filter) } -> std::same_as<Matrix9<typename M::Scalar>>;
-};
+concept HasProjectedHessian =
+    HyperelasticMaterial<M> && requires(const M& m, const Matrix3<typename M::Scalar>& F, PsdFilter filter) {
+        { m.projected_hessian(F, filter) } -> std::same_as<Matrix9<typename M::Scalar>>;
+    };
 
 /// The Hessian at F with its negative eigenvalues treated as `filter` says; a numeric 9x9 eigen-decomposition
 /// where the material has no projection of its own.
@@ -78,9 +79,7 @@ using MaterialOf = std::remove_cvref_t<decltype(std::declval<const Field&>().at(
 
 /// A material per cell.
 template <class Field>
-concept MaterialField = requires(const Field& field, Index cell) {
-    field.at(cell);
-}
-&&HyperelasticMaterial<MaterialOf<Field>>;
+concept MaterialField =
+    requires(const Field& field, Index cell) { field.at(cell); } && HyperelasticMaterial<MaterialOf<Field>>;
 
 }  // namespace softtissue
