@@ -66,58 +66,30 @@ void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Ma
     }
 }
 
-}  // namespace detail
-
-template <RealLanes Scalar, int N>
-SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
+/// A, entries at most 1 in size, becomes the matrix of its eigenvectors; the eigenvalues. As diagonalise_by_ql().
+template <class Scalar, int N>
+Eigen::Matrix<Scalar, N, 1> diagonalise_by_rotations(Eigen::Matrix<Scalar, N, N>& A) {
     constexpr int max_sweeps = 30;  // quadratic convergence: eight are enough, the rest is for denormals
     using std::abs;
-    using std::max;
     using Limits = std::numeric_limits<RealOf<Scalar>>;
-    // With a largest entry of 1 no square leaves the range of the scalar.
-    const Scalar smallest(Limits::min());
-    Scalar largest(0);
-    for (int j = 0; j < N; ++j) {
-        for (int i = j; i < N; ++i) {
-            largest = max(largest, Scalar(abs(lower(i, j))));
-        }
-    }
-    const UnitScale<Scalar> scale(largest);
-    Eigen::Matrix<Scalar, N, N> H;
-    SymmetricEigen<Scalar, N> result;
+    Eigen::Matrix<Scalar, N, N> H = A;
     for (int j = 0; j < N; ++j) {
         for (int i = 0; i < N; ++i) {
-            result.vectors(i, j) = i == j ? Scalar(1) : Scalar(0);
-            if (i >= j) {
-                H(i, j) = scale.unit(lower(i, j));
-            }
+            A(i, j) = Scalar(i == j ? 1 : 0);
         }
-    }
-    if constexpr (N > 4) {
-        result.values = diagonalise_by_ql(H);
-        for (int i = 0; i < N; ++i) {
-            result.values(i) = scale.original(result.values(i));
-        }
-        result.vectors = H;
-        return result;
     }
     // below half an ulp of both diagonal entries a rotation changes nothing
-    const Scalar threshold(Limits::epsilon() * Limits::epsilon() / RealOf<Scalar>(16));
+    const Scalar smallest(Limits::min()), threshold(Limits::epsilon() * Limits::epsilon() / RealOf<Scalar>(16));
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         bool is_diagonal = true;
-        // Planes (p, q) of one sum modulo N are disjoint: the processor need not wait for one to turn the next.
-        for (int sum = 0; sum < N; ++sum) {
-            for (int p = 0; p < N; ++p) {
-                const int q = (sum - p + N) % N;
-                if (q <= p) {
-                    continue;
-                }
+        for (int p = 0; p < N; ++p) {
+            for (int q = p + 1; q < N; ++q) {
                 const Scalar squared = H(q, p) * H(q, p);
                 const Scalar size = abs(H(p, p) * H(q, q));
                 const auto is_off = (squared > threshold * size) & (squared > smallest);
                 if (any_of(is_off)) {
                     is_diagonal = false;
-                    detail::jacobi_rotate(is_off, H, result.vectors, p, q);
+                    jacobi_rotate(is_off, H, A, p, q);
                 }
             }
         }
@@ -125,8 +97,40 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
             break;
         }
     }
+    Eigen::Matrix<Scalar, N, 1> values;
     for (int i = 0; i < N; ++i) {
-        result.values(i) = scale.original(H(i, i));
+        values(i) = H(i, i);
+    }
+    return values;
+}
+
+}  // namespace detail
+
+template <RealLanes Scalar, int N>
+SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
+    using std::abs;
+    using std::max;
+    Scalar largest(0);
+    for (int j = 0; j < N; ++j) {
+        for (int i = j; i < N; ++i) {
+            largest = max(largest, Scalar(abs(lower(i, j))));
+        }
+    }
+    // With a largest entry of 1 no square leaves the range of the scalar.
+    const UnitScale<Scalar> scale(largest);
+    SymmetricEigen<Scalar, N> result;
+    for (int j = 0; j < N; ++j) {
+        for (int i = j; i < N; ++i) {
+            result.vectors(i, j) = result.vectors(j, i) = scale.unit(lower(i, j));
+        }
+    }
+    if constexpr (N > 4) {
+        result.values = diagonalise_by_ql(result.vectors);
+    } else {
+        result.values = detail::diagonalise_by_rotations(result.vectors);
+    }
+    for (int i = 0; i < N; ++i) {
+        result.values(i) = scale.original(result.values(i));
     }
     return result;
 }
