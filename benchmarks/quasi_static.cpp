@@ -74,14 +74,14 @@ template <class S, class Solve>
 void solve_poses(benchmark::State& state, const Solve& solve) {
     const Scene& scene = scene_of(state);
     std::int64_t count = 0;
-    double iterations = 0, between = 0, linear = 0, energy = 0;
+    double iterations = 0, between = 0, linear = 0, energy = 0, unfinished = 0;
     for (auto _ : state) {
         state.PauseTiming();
         const std::int64_t pose = count++ % state.range(1) * scene.limb.num_poses / state.range(1);
         Matrix3X<S> x = scene.starts[size_t(pose)].template cast<S>();
         state.ResumeTiming();
         const SolveReport<S> report = solve(x);
-        require(report.succeeded(), "pose ", pose, ": ", to_string(report.status));
+        unfinished += report.succeeded() ? 0 : 1;
         iterations += report.iterations;
         between += report.quasi_newton_steps;
         linear += report.linear_iterations;
@@ -92,6 +92,7 @@ void solve_poses(benchmark::State& state, const Solve& solve) {
     state.counters["steps between"] = mean(between);
     state.counters["linear iterations"] = mean(linear);
     state.counters["energy J"] = mean(energy);
+    state.counters["poses not finished"] = benchmark::Counter(unfinished);
     count_work<S>(state, {.unit = "poses", .items = 1});
 }
 
@@ -243,6 +244,7 @@ void plain_elements_and_cholmod(benchmark::State& state) {
     CholmodSolver solver;
     NewtonOptions<double> options = quasi_static_options<double>();
     options.quasi_newton_steps = has_steps_between ? options.quasi_newton_steps : 0;
+    options.max_iterations = 400;  // one of the poses takes more than the 100 that are enough with steps between
     solve_poses<double>(state, [&](Matrix3X<double>& x) {
         x -= body.mesh.rest_positions;
         return minimise(objective, solver, x, options);

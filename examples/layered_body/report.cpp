@@ -73,7 +73,7 @@ void add_figures(HtmlReport& page, const Figures& figures, const Scene& scene) {
     page.add_figure({.name = "Embedded vertices",
                      .value = std::to_string(scene.bones.embedding.num_points() + scene.muscles.embedding.num_points()),
                      .note = "of bones and muscles"});
-    add_chart(page, figures, "Volume error of each pose", "mean square of the relative change", 1.0,
+    add_chart(page, figures, "Volume error of each pose", "mean square of the change", 1.0,
               &PoseFigures<Scalar>::volume, true, true);
     if (figures.has_reference) {
         add_chart(page, figures, "Position error of each pose", "mean distance to finite elements [mm]", 1e3,

@@ -15,8 +15,8 @@
 #include <softtissue/skinning/smpl_body.hpp>
 #include <softtissue/solver/report.hpp>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -45,7 +45,8 @@ struct StepStatistics {
     Index inverted_cells_max = 0;
     double milliseconds = 0.0;
 
-    void add(double time, const softtissue::SolveReport<double>& report, Index inverted_cells, double step_milliseconds) {
+    void add(double time, const softtissue::SolveReport<double>& report, Index inverted_cells,
+             double step_milliseconds) {
         records.push_back({time, report.energy, report.quasi_newton_steps, report.iterations, step_milliseconds});
         ++count;
         not_converged += report.succeeded() ? 0 : 1;
@@ -132,22 +133,24 @@ inline void write_results(const std::filesystem::path& path, const AvatarResults
 inline std::vector<std::pair<std::string, std::string>> result_rows(const AvatarResults& results) {
     std::vector<std::pair<std::string, std::string>> rows;
     const auto row = [&](const char* name, const std::string& value) { rows.emplace_back(name, value); };
-    row("cells, vertices, of them free", std::to_string(results.cells) + ", " + std::to_string(results.vertices) + ", " +
-                                             std::to_string(results.free_vertices));
-    row("inverted cells at rest, ever", std::to_string(results.inverted_at_rest) + ", " +
-                                            std::to_string(results.steps.inverted_cells_max));
+    row("cells, vertices, of them free", std::to_string(results.cells) + ", " + std::to_string(results.vertices) +
+                                             ", " + std::to_string(results.free_vertices));
+    row("inverted cells at rest, ever",
+        std::to_string(results.inverted_at_rest) + ", " + std::to_string(results.steps.inverted_cells_max));
     const auto static_row = [&](const char* name, const StaticPose& pose) {
         row(name, formatted("%.3g mm from the skinned body, ", 1e3 * pose.error) + to_string(pose.status));
     };
     static_row("static pose, unposed strain", results.static_unposed);
     static_row("static pose, world strain", results.static_world);
     static_row("static pose, retargeted strain", results.static_retargeted);
-    row("time steps, not converged", std::to_string(results.steps.count) + ", " + std::to_string(results.steps.not_converged));
+    row("time steps, not converged",
+        std::to_string(results.steps.count) + ", " + std::to_string(results.steps.not_converged));
     row("Newton iterations a step", formatted("%.2f", results.steps.newton_iterations_mean()) + ", at most " +
                                         std::to_string(results.steps.newton_iterations_max));
     row("time a step", formatted("%.1f ms", results.steps.milliseconds_mean()));
     row("largest soft-tissue displacement", formatted("%.1f mm", 1e3 * results.largest_displacement));
-    row("set-up, peak memory", formatted("%.1f s, ", results.seconds_setup) + formatted("%.0f MB", double(peak_memory_bytes()) / 1e6));
+    row("set-up, peak memory",
+        formatted("%.1f s, ", results.seconds_setup) + formatted("%.0f MB", double(peak_memory_bytes()) / 1e6));
     return rows;
 }
 
@@ -168,7 +171,10 @@ class AvatarOutput {
 public:
     AvatarOutput(std::filesystem::path folder, const softtissue::SmplBody<double>& body,
                  const softtissue::SoftLayer<double>& layer, double frame_rate, bool vtu)
-        : folder_(std::move(folder)), body_(body), layer_(layer), frame_rate_(frame_rate),
+        : folder_(std::move(folder)),
+          body_(body),
+          layer_(layer),
+          frame_rate_(frame_rate),
           stride_(std::max(1, int(frame_rate / 30.0 + 0.5))) {
         if (vtu) {
             std::filesystem::create_directories(folder_ / "vtu");
@@ -196,8 +202,9 @@ public:
                  const softtissue::Connectivity<num_nodes>& cells) {
         char name[32];
         std::snprintf(name, sizeof name, "frame_%05d.vtu", num_frames_);
-        softtissue::write_vtu(folder_ / "vtu" / name, tissue, cells,
-                              {.vertex_arrays = {{"displacement", (tissue - skinned).cast<float>()}}, .cell_arrays = {}});
+        softtissue::write_vtu(
+            folder_ / "vtu" / name, tissue, cells,
+            {.vertex_arrays = {{"displacement", (tissue - skinned).cast<float>()}}, .cell_arrays = {}});
         steps_.push_back({double(num_frames_ - 1) / frame_rate_, name});  // of the frame added last
     }
 
@@ -275,8 +282,8 @@ private:
         for (size_t part = 0; part < parts; ++part) {
             const auto begin = frames_.begin() + std::ptrdiff_t(part * frames_.size() / parts);
             const auto end = frames_.begin() + std::ptrdiff_t((part + 1) * frames_.size() / parts);
-            selected.push_back(&*std::max_element(
-                begin, end, [](const Frame& a, const Frame& b) { return a.largest < b.largest; }));
+            selected.push_back(
+                &*std::max_element(begin, end, [](const Frame& a, const Frame& b) { return a.largest < b.largest; }));
         }
         return selected;
     }
@@ -285,7 +292,8 @@ private:
         constexpr int panel_width = 250, panel_height = 400, margin = 60, legend_width = 120, row_gap = 60;
         const std::vector<const Frame*> selected = selected_frames();
         const View view(-0.5, 0.12);
-        Picture picture(margin + panel_width * int(selected.size()) + legend_width, 2 * panel_height + row_gap + 2 * margin);
+        Picture picture(margin + panel_width * int(selected.size()) + legend_width,
+                        2 * panel_height + row_gap + 2 * margin);
         const double top = scale_top();
         const double scale = panel_scale(selected, view, panel_width, panel_height);
         const Matrix3X<float> plain = Matrix3X<float>::Constant(3, body_.num_vertices(), 0.82F);
@@ -293,9 +301,10 @@ private:
             const Frame& frame = *selected[column];
             const int x = margin + panel_width * int(column);
             const Eigen::Vector3d center = box_center(frame.skinned);
-            picture.mesh(frame.skinned.cast<double>(), body_.faces, plain, view, center, scale, x, margin, panel_width, panel_height);
-            picture.mesh(frame.simulated.cast<double>(), body_.faces, displacement_colors(frame, top), view, center, scale, x,
-                         margin + panel_height + row_gap, panel_width, panel_height);
+            picture.mesh(frame.skinned.cast<double>(), body_.faces, plain, view, center, scale, x, margin, panel_width,
+                         panel_height);
+            picture.mesh(frame.simulated.cast<double>(), body_.faces, displacement_colors(frame, top), view, center,
+                         scale, x, margin + panel_height + row_gap, panel_width, panel_height);
             char caption[64];
             std::snprintf(caption, sizeof caption, "%.2f s,  %.1f mm", frame.time, 1e3 * frame.largest);
             picture.text(caption, x + 0.5 * panel_width, 2 * panel_height + row_gap + margin + 34, 17, 0.5);
@@ -317,7 +326,8 @@ private:
     double panel_scale(const std::vector<const Frame*>& selected, const View& view, int width, int height) const {
         double scale = 1e9;
         for (const Frame* frame : selected) {
-            const Matrix3X<double> screen = view.rotation * (frame->skinned.cast<double>().colwise() - box_center(frame->skinned));
+            const Matrix3X<double> screen =
+                view.rotation * (frame->skinned.cast<double>().colwise() - box_center(frame->skinned));
             const Eigen::Vector3d reach = screen.cwiseAbs().rowwise().maxCoeff() + Eigen::Vector3d::Constant(0.02);
             scale = std::min({scale, 0.5 * width / reach(0), 0.5 * height / reach(1)});
         }

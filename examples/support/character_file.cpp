@@ -23,9 +23,10 @@ CharacterScene read_character(const std::string& path, const CharacterChoice& ch
     try {
         validate_closed_surface(character.positions, character.triangles, character.source);
     } catch (const InvalidInput& error) {
-        throw_invalid_input(error.what(),
-                            "; soft tissue needs a surface that encloses it: close the holes (eyes, mouth, neck, cuffs) and "
-                            "remove inner and double faces before export, or name another mesh by --mesh");
+        throw_invalid_input(
+            error.what(),
+            "; soft tissue needs a surface that encloses it: close the holes (eyes, mouth, neck, cuffs) and "
+            "remove inner and double faces before export, or name another mesh by --mesh");
     }
     const CharacterRig rig(character);
     CharacterScene scene{rig.body(), rig.motion(clip), {}};

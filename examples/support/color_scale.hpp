@@ -14,8 +14,9 @@ namespace examples {
 /// sRGB in [0, 1].
 inline Eigen::Vector3f scale_color(double value) {
     static const std::array<Eigen::Vector3f, 5> stops{
-        Eigen::Vector3f(0.82F, 0.82F, 0.80F), Eigen::Vector3f(0.99F, 0.90F, 0.55F), Eigen::Vector3f(0.98F, 0.60F, 0.25F),
-        Eigen::Vector3f(0.85F, 0.20F, 0.15F), Eigen::Vector3f(0.42F, 0.02F, 0.15F)};
+        Eigen::Vector3f(0.82F, 0.82F, 0.80F), Eigen::Vector3f(0.99F, 0.90F, 0.55F),
+        Eigen::Vector3f(0.98F, 0.60F, 0.25F), Eigen::Vector3f(0.85F, 0.20F, 0.15F),
+        Eigen::Vector3f(0.42F, 0.02F, 0.15F)};
     const double place = std::clamp(value, 0.0, 1.0) * double(stops.size() - 1);
     const size_t below = std::min(size_t(place), stops.size() - 2);
     const float t = float(place - double(below));

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "chart.hpp"
+#include "report_scene.hpp"
 
 #include <softtissue/core/notation.hpp>
 
@@ -15,40 +16,6 @@
 #include <vector>
 
 namespace examples {
-
-using softtissue::Index;
-using softtissue::Matrix3X;
-
-/// Something that surfaces can be coloured by, in `unit`; its scale goes from `low` to `high`.
-struct ReportField {
-    std::string name = {}, unit = {}, note = {};
-    double low = 0.0, high = 1.0;
-    bool is_signed = false;  // colours for both signs
-    bool is_open = false;    // what lies beyond `high` is drawn as `high`
-};
-
-/// What is switched on and off together, in all views.
-struct ReportLayer {
-    std::string name = {};
-    char key = 0;  // on the keyboard
-    Eigen::Vector3f color = Eigen::Vector3f::Constant(0.8F);
-    double opacity = 1.0;
-    bool is_shown = true;
-};
-
-/// One of the pictures side by side.
-struct ReportView {
-    std::string name = {}, caption = {};
-    bool is_shown = true;
-};
-
-/// A surface; or a skeleton, whose `bones` join two vertices each.
-struct ReportMesh {
-    Index view = 0, layer = 0;
-    softtissue::Triangles triangles = {};
-    softtissue::Connectivity<2> bones = {};
-    Index similar_to = -1;  // an earlier mesh with as many vertices at nearly the same places: takes less room
-};
 
 /// One number under the picture.
 struct ReportFigure {

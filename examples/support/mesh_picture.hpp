@@ -27,12 +27,15 @@ using softtissue::Matrix3X;
 struct View {
     Eigen::Matrix3d rotation;
     View(double yaw, double pitch)
-        : rotation(Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())) {}
+        : rotation(Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitX()) *
+                   Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())) {}
 };
 
 class Picture {
 public:
-    Picture(int width, int height) : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), cairo_(cairo_create(surface_.get())) {
+    Picture(int width, int height)
+        : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)),
+          cairo_(cairo_create(surface_.get())) {
         cairo_set_source_rgb(cairo_.get(), 1.0, 1.0, 1.0);
         cairo_paint(cairo_.get());
     }
@@ -88,7 +91,8 @@ public:
         cairo_surface_flush(surface_.get());
         softtissue::AtomicFile file(path);
         const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), file.temporary_path().c_str());
-        softtissue::require(status == CAIRO_STATUS_SUCCESS, path.string(), ": cannot write: ", cairo_status_to_string(status));
+        softtissue::require(status == CAIRO_STATUS_SUCCESS, path.string(),
+                            ": cannot write: ", cairo_status_to_string(status));
         file.commit();
     }
 
@@ -104,7 +108,9 @@ private:
         std::vector<Eigen::Vector3f> color;
 
         Raster(int w, int h)
-            : width(w), height(h), depth(size_t(w) * size_t(h), -std::numeric_limits<double>::infinity()),
+            : width(w),
+              height(h),
+              depth(size_t(w) * size_t(h), -std::numeric_limits<double>::infinity()),
               color(depth.size(), Eigen::Vector3f::Ones()) {}
 
         void triangle(const Matrix3X<double>& screen, const Matrix3X<float>& shaded, const Eigen::Vector3i& corners) {
@@ -147,12 +153,15 @@ private:
         cairo_surface_flush(surface_.get());
         unsigned char* const data = cairo_image_surface_get_data(surface_.get());
         const int stride = cairo_image_surface_get_stride(surface_.get());
-        for (int row = std::max(0, -y); row < height && y + row < cairo_image_surface_get_height(surface_.get()); ++row) {
-            for (int column = std::max(0, -x); column < width && x + column < cairo_image_surface_get_width(surface_.get()); ++column) {
+        for (int row = std::max(0, -y); row < height && y + row < cairo_image_surface_get_height(surface_.get());
+             ++row) {
+            for (int column = std::max(0, -x);
+                 column < width && x + column < cairo_image_surface_get_width(surface_.get()); ++column) {
                 Eigen::Vector3f sum = Eigen::Vector3f::Zero();
                 bool is_covered = false;
                 for (int k = 0; k < samples * samples; ++k) {
-                    const size_t place = size_t(samples * row + k / samples) * size_t(raster.width) + size_t(samples * column + k % samples);
+                    const size_t place = size_t(samples * row + k / samples) * size_t(raster.width) +
+                                         size_t(samples * column + k % samples);
                     sum += raster.color[place];
                     is_covered |= std::isfinite(raster.depth[place]);
                 }

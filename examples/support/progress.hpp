@@ -31,8 +31,8 @@ public:
         }
         last_ = now;
         const double remaining = (now - start_) / done * (total_ - done);
-        std::fprintf(stderr, "%s%s %d/%d, %.0f s left   %s", is_terminal ? "\r" : "", what_.c_str(), done, total_, remaining,
-                     is_terminal && done != total_ ? "" : "\n");
+        std::fprintf(stderr, "%s%s %d/%d, %.0f s left   %s", is_terminal ? "\r" : "", what_.c_str(), done, total_,
+                     remaining, is_terminal && done != total_ ? "" : "\n");
         std::fflush(stderr);
     }
 
@@ -54,6 +54,8 @@ inline void watch_interrupt() {
         std::signal(SIGINT, SIG_DFL);
     });
 }
-inline bool is_interrupted() { return detail::interrupted != 0; }
+inline bool is_interrupted() {
+    return detail::interrupted != 0;
+}
 
 }  // namespace examples

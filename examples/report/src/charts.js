@@ -65,6 +65,21 @@ function tickLabels(isLog) {
   });
 }
 
+const wholeSteps = [0, 1, 2, 3, 4, 5, 6, 7, 8].flatMap((power) => [1, 2, 5].map((digit) => digit * 10 ** power));
+
+/** As wide as the longest of its tick labels. */
+function fitToLabels(plot, labels, axisIndex) {
+  const axis = plot.axes[axisIndex];
+  if (!labels) {
+    return 46;
+  }
+  plot.ctx.save();
+  [plot.ctx.font] = axis.font;
+  const widths = labels.map((label) => plot.ctx.measureText(label ?? '').width / devicePixelRatio);
+  plot.ctx.restore();
+  return Math.ceil(Math.max(28, ...widths)) + axis.ticks.size + axis.gap + 8;
+}
+
 export class Chart {
   /** `clock`: of the animation, if the x axis has its frames. */
   constructor(chart, clock) {
@@ -79,6 +94,11 @@ export class Chart {
     this.playhead = element('div', { class: 'playhead' });
     new ResizeObserver(() => this.draw()).observe(this.plotArea);
     this.clock?.listen(() => this.follow());
+  }
+
+  /** Poses and epochs are counted. */
+  hasWholeNumbers() {
+    return this.chart.kind !== 'histogram' && this.data[0].every(Number.isInteger);
   }
 
   options(width, height) {
@@ -104,7 +124,10 @@ export class Chart {
           return [low >= 0 && low < 0.6 * high ? 0 : low - 0.08 * span, high + 0.08 * span];
         } },
       },
-      axes: [{ ...axis(chart.x_title, chart.is_log_x), size: 30 }, { ...axis(chart.y_title, chart.is_log_y), size: 46 }],
+      axes: [
+        { ...axis(chart.x_title, chart.is_log_x), size: 30, incrs: this.hasWholeNumbers() ? wholeSteps : undefined },
+        { ...axis(chart.y_title, chart.is_log_y), size: fitToLabels },
+      ],
       series: [{}, ...chart.series.map((series, k) => {
         const color = paint(series.color);
         return {
