@@ -6,6 +6,7 @@
 #include <softtissue/material/field.hpp>
 #include <softtissue/material/stable_neo_hookean.hpp>
 
+#include <support/avatar_crowd.hpp>
 #include <support/catch.hpp>
 #include <support/rigged_bar.hpp>
 
@@ -46,4 +47,16 @@ TEST_CASE("threads do not change a bit", "[determinism]") {
         CHECK(trajectory(executor) == sequential);
         CHECK(trajectory(executor) == sequential);
     }
+}
+
+TEST_CASE("64 avatars stepped by 8 threads have the bits of one thread", "[determinism]") {
+    const std::vector<Matrix3X<double>> alone = crowd_positions(64, 5, 1);
+    for (size_t i = 0; i < alone.size(); ++i) {
+        REQUIRE(alone[i].cols() > 0);
+        REQUIRE((i < 40 || alone[i] == alone[i - 40]));  // the swing has 40 steps
+        REQUIRE((i == 0 || alone[i] != alone[i - 1]));
+    }
+    CHECK(crowd_positions(64, 5, 8) == alone);
+    const ThreadExecutor shared(2);
+    CHECK(crowd_positions(64, 5, 8, shared) == alone);
 }

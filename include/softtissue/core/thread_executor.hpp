@@ -6,7 +6,7 @@
 /// Contract    that of Executor. Of several exceptions the one of the lowest range is rethrown, after all ranges are done.
 /// Sharing     one loop at a time: a second calling thread waits for the first. A loop started by the body of another
 ///             loop of the same executor runs whole on the thread that starts it.
-/// Refuses     threads < 1 (InvalidInput).
+/// Refuses     threads < 1, more than the system starts (InvalidInput).
 /// Cost        a few microseconds a loop while loops follow each other closely, a thread wake-up otherwise.
 /// Needs       exceptions, and a thread library to link (CMake: Threads::Threads).
 /// Tests       tests/unit/core/thread_executor_test.cpp
@@ -24,6 +24,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -80,7 +81,12 @@ private:
         void start() {
             workers.reserve(errors.size() - 1);
             for (int part = 1; part < num_threads; ++part) {
-                workers.emplace_back([this, part] { work(part); });
+                try {
+                    workers.emplace_back([this, part] { work(part); });
+                } catch (const std::system_error& error) {
+                    throw_invalid_input("threads = ", num_threads, ", but the system starts no more than ", part, " (",
+                                        error.code().message(), "), expected fewer, or more memory for each");
+                }
             }
         }
 

@@ -27,7 +27,9 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/io/atomic_file.hpp>
 #include <softtissue/io/dataset_plan_file.hpp>
+#include <softtissue/io/folder_lock.hpp>
 #include <softtissue/io/layered_body_file.hpp>
+#include <softtissue/io/output_folder.hpp>
 #include <softtissue/io/sample_file.hpp>
 #include <softtissue/ndg/dataset_plan.hpp>
 
@@ -59,11 +61,17 @@ public:
 
     static bool has_plan(const std::filesystem::path& path) { return std::filesystem::exists(path / "plan.json"); }
 
-    /// Makes the folder of a new data set; `definition` is all that its files depend on. Several processes may do so at once.
+    /// Makes the folder of a new data set; `definition` is all that its files depend on. Of several processes that do so at
+    /// once one makes it; the others, and whoever comes later, throw unless theirs is the same.
     static void create(const std::filesystem::path& path, nlohmann::ordered_json definition, const DatasetPlan& plan,
                        const SkeletalLayers<double>& mean) {
         for (const char* name : {"bodies", "samples", "failed"}) {
-            std::filesystem::create_directories(path / name);
+            make_output_folder(path / name);
+        }
+        const FolderLock one_at_a_time(path);
+        if (has_plan(path)) {
+            DatasetFolder(path).require_definition(std::move(definition));
+            return;
         }
         write_dataset_plan(path / "plan.npz", plan);
         write_layered_body(path / "body.npz", mean);
@@ -77,9 +85,10 @@ public:
         for (const auto& [key, value] : definition.items()) {
             require(definition_.contains(key) && definition_[key] == value, path_.string(),
                     ": belongs to another data set: ", key, " is ",
-                    definition_.value(key, nlohmann::ordered_json()).dump(), ", expected ", value.dump());
+                    definition_.value(key, nlohmann::ordered_json()).dump(), ", expected ", value.dump(),
+                    "; choose another folder");
         }
-        require(definition_ == definition, path_.string(), ": belongs to another data set");
+        require(definition_ == definition, path_.string(), ": belongs to another data set; choose another folder");
     }
 
     const std::filesystem::path& path() const { return path_; }

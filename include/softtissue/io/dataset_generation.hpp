@@ -7,6 +7,7 @@
 ///             `maker(betas)` gives a ShapedBody<double> or throws InvalidInput where there is none: then its samples fail.
 ///             `observer(progress)` is called after every sample, one call at a time; false ends after the running samples.
 /// Shards      body b belongs to shard b modulo num_shards; shards may run at the same time, on any machine that sees the folder.
+///             Two runs of one shard at a time do its work twice, and harm nothing.
 /// Refuses     a shard that does not exist, no thread (InvalidInput); a disk that cannot be written.
 /// Cost        each thread holds one body with its matrices
 /// Tests       tests/unit/io/dataset_generation_test.cpp, tests/scenario/dataset_generation_test.cpp
@@ -20,13 +21,13 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/thread_executor.hpp>
 #include <softtissue/io/dataset_folder.hpp>
+#include <softtissue/io/file_claim.hpp>
 #include <softtissue/io/layered_body_file.hpp>
 #include <softtissue/ndg/sample_generator.hpp>
 #include <softtissue/ndg/shaped_body.hpp>
 #include <softtissue/solver/concepts.hpp>
 #include <softtissue/solver/gauss_seidel_cg.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <mutex>
@@ -90,31 +91,13 @@ public:
     }
 
 private:
-    /// What a killed run left half written; nothing that another shard may be writing.
+    /// What killed runs have left half written; not what a process that lives is writing.
     void remove_stale_files() const {
-        const DatasetPlan& plan = folder_.plan();
-        remove_stale_files(folder_.path(), [&](Index) { return options_.num_shards == 1; });
-        remove_stale_files(folder_.path() / "bodies", [&](Index body) { return is_mine(body); });
-        for (const char* name : {"samples", "failed"}) {
-            remove_stale_files(folder_.path() / name, [&](Index sample) {
-                return sample < plan.num_samples() && is_mine(plan.samples[size_t(sample)].body);
-            });
-        }
-    }
-
-    bool is_mine(Index body) const { return body % options_.num_shards == options_.shard; }
-
-    /// Those whose name begins with a number for which `is_stale`; no number counts as 0.
-    template <class Condition>
-    static void remove_stale_files(const std::filesystem::path& path, const Condition& is_stale) {
-        for (const auto& entry : std::filesystem::directory_iterator(path)) {
-            const std::string file = entry.path().filename().string();
-            Index number = 0;
-            for (size_t k = 0; k < std::min(file.size(), size_t(9)) && file[k] >= '0' && file[k] <= '9'; ++k) {
-                number = 10 * number + (file[k] - '0');
-            }
-            if (file.find(".part") != std::string::npos && is_stale(number)) {
-                std::filesystem::remove(entry.path());
+        for (const char* name : {"", "bodies", "samples", "failed"}) {
+            for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / name)) {
+                if (entry.path().filename().string().find(".part") != std::string::npos) {
+                    remove_abandoned(entry.path());
+                }
             }
         }
     }

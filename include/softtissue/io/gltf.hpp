@@ -30,6 +30,7 @@
 
 #include <tiny_gltf.h>
 
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -98,16 +99,22 @@ public:
         append_frame(mesh, positions.template cast<float>());
     }
 
-    /// Writes the file, complete or not at all. The animation is finished by that: nothing may be added or written after it.
+    /// Writes the file, complete or not at all. The animation is finished by that: nothing may be added after it, but it
+    /// may be written again.
     void write(const std::filesystem::path& path) {
-        require(!finished_ && !meshes_.empty(), path.string(), ": expected a gltf animation with meshes, written once");
-        finished_ = true;
-        append_animation(path.string());
+        require(!meshes_.empty() && finished_ == complete_, path.string(),
+                ": expected a gltf animation with meshes whose frames fit");
+        if (!finished_) {
+            finished_ = true;
+            append_animation(path.string());
+            complete_ = true;
+        }
         AtomicFile file(path);
+        errno = 0;
         std::ofstream stream(file.temporary_path(), std::ios::binary);
         tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, false, true);
         stream.close();
-        require(stream.good(), path.string(), ": cannot write");
+        file.require_written(stream.good());
         file.commit();
     }
 
@@ -267,6 +274,7 @@ private:
     std::vector<MeshState> meshes_;
     tinygltf::Model model_;
     bool finished_ = false;
+    bool complete_ = false;
 };
 
 }  // namespace softtissue

@@ -8,6 +8,7 @@
 /// Example     const NpzFile file = read_npz("walk.npz");
 ///             const Matrix3X<double> translations = file.at("trans").columns3<double>();
 ///             write_npz("out.npz", {{"x", NpyArray::from_columns(x)}});
+/// Cost        writing holds the file in memory once more
 /// Needs       libzip (link with -lzip)
 /// Tests       tests/unit/io/npz_test.cpp
 #pragma once
@@ -71,17 +72,21 @@ struct ZipDiscard {
 struct ZipMemberClose {
     void operator()(zip_file_t* member) const { zip_fclose(member); }
 };
+struct ZipSourceFree {
+    void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
 using ZipArchive = std::unique_ptr<zip_t, ZipDiscard>;
+using ZipSource = std::unique_ptr<zip_source_t, ZipSourceFree>;
 
-inline ZipArchive open_zip(const std::string& path, const std::string& named, int flags) {
+inline ZipArchive open_zip(const std::string& path) {
     int code = 0;
-    ZipArchive archive(zip_open(path.c_str(), flags, &code));
+    ZipArchive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
     if (archive == nullptr) {
         zip_error_t error;
         zip_error_init_with_code(&error, code);
         const std::string reason = zip_error_strerror(&error);
         zip_error_fini(&error);
-        throw_invalid_input(named, ": cannot be opened as an npz (zip) file: ", reason);
+        throw_invalid_input(path, ": cannot be opened as an npz (zip) file: ", reason);
     }
     return archive;
 }
@@ -118,13 +123,27 @@ inline std::vector<unsigned char> read_zip_member(zip_t* archive, zip_uint64_t i
     return bytes;
 }
 
+/// The content of an archive that was written to memory: libzip's own way to a file leaves temporary files behind where
+/// the process is killed.
+inline void write_zip_source(zip_source_t* source, AtomicFile& file) {
+    std::vector<unsigned char> bytes(std::size_t(1) << 16);
+    require(zip_source_open(source) == 0, file.path().string(),
+            ": cannot write: ", zip_error_strerror(zip_source_error(source)));
+    zip_int64_t got = 0;
+    while ((got = zip_source_read(source, bytes.data(), bytes.size())) > 0) {
+        file.write(bytes.data(), std::size_t(got));
+    }
+    require(got == 0, file.path().string(), ": cannot write: ", zip_error_strerror(zip_source_error(source)));
+    zip_source_close(source);
+}
+
 }  // namespace detail
 
 /// Reads all arrays of `path`. Members that are not .npy files are skipped.
 inline NpzFile read_npz(const std::filesystem::path& path) {
     const std::string file = path.string();
     require(!std::filesystem::is_directory(path), file, ": is a folder, expected an npz file");
-    const detail::ZipArchive archive = detail::open_zip(file, file, ZIP_RDONLY);
+    const detail::ZipArchive archive = detail::open_zip(file);
     const std::uintmax_t file_size = std::filesystem::file_size(path);
     NpyArrays arrays;
     const zip_int64_t members = zip_get_num_entries(archive.get(), 0);
@@ -150,7 +169,13 @@ inline void write_npz(const std::filesystem::path& path, const NpyArrays& arrays
     const std::string file = path.string();
     require(!arrays.empty(), file, ": no arrays to write");
     AtomicFile output(path);
-    detail::ZipArchive archive = detail::open_zip(output.temporary_path().string(), file, ZIP_CREATE | ZIP_TRUNCATE);
+    zip_error_t error;
+    zip_error_init(&error);
+    const detail::ZipSource content(zip_source_buffer_create(nullptr, 0, 0, &error));
+    detail::ZipArchive archive(
+        content == nullptr ? nullptr : zip_open_from_source(content.get(), ZIP_CREATE | ZIP_TRUNCATE, &error));
+    require(archive != nullptr, file, ": cannot write: ", zip_error_strerror(&error));
+    zip_source_keep(content.get());  // one owner here, one in the archive
     for (const auto& [name, array] : arrays) {
         const std::span<const unsigned char> bytes = array.file_bytes();
         zip_source_t* const source = zip_source_buffer(archive.get(), bytes.data(), bytes.size(), 0);
@@ -170,6 +195,7 @@ inline void write_npz(const std::filesystem::path& path, const NpyArrays& arrays
     }
     require(zip_close(archive.get()) == 0, file, ": cannot write: ", zip_strerror(archive.get()));
     static_cast<void>(archive.release());  // closed
+    detail::write_zip_source(content.get(), output);
     output.commit();
 }
 

@@ -26,6 +26,7 @@ struct PvdStep {
 /// Writes the series.
 inline void write_pvd(const std::filesystem::path& path, const std::vector<PvdStep>& steps) {
     std::ostringstream xml;
+    xml.exceptions(std::ios::badbit);  // out of memory is told, not written as a shorter file
     xml.precision(17);
     xml << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
     for (const PvdStep& step : steps) {

@@ -40,7 +40,7 @@ TrainingReport train_resumably(M& model, const TrainingOptions& options, const C
         const SafetensorsFile file = read_safetensors(checkpoint.path);
         require(file.metadata_at("description") == checkpoint.description, file.path(),
                 ": belongs to another training (", file.metadata_at("description"), "), expected ",
-                checkpoint.description);
+                checkpoint.description, "; remove it, or choose another name, to begin afresh");
         state = training_state<S>(file);
     }
     const auto save = [&] { write_training_state(checkpoint.path, state, {{"description", checkpoint.description}}); };

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <iterator>
 #include <string>
 
 using namespace softtissue;
@@ -69,6 +70,37 @@ TEST_CASE("places that cannot be written are refused by name") {
     CHECK(folder.num_files() == 0);
 }
 
+TEST_CASE("what killed writers have left is taken over, what living ones write is not") {
+    const TemporaryFolder folder;
+    write_bytes(folder / "a.txt.part0", "half a file, longer than the next");
+    AtomicFile first(folder / "a.txt");
+    CHECK(first.temporary_path() == folder / "a.txt.part0");
+    AtomicFile second(folder / "a.txt");
+    CHECK(second.temporary_path() == folder / "a.txt.part1");
+    first.write("first");
+    first.commit();
+    CHECK(read_bytes(folder / "a.txt") == "first");
+    AtomicFile third(folder / "a.txt");
+    CHECK(third.temporary_path() == folder / "a.txt.part0");
+    third.commit();
+    CHECK(std::filesystem::file_size(folder / "a.txt") == 0);
+    second.commit();
+    CHECK(folder.num_files() == 1);
+}
+
+TEST_CASE("a link stays a link, the file behind it is replaced") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "far");
+    write_bytes(folder / "far/a.txt", "old");
+    std::filesystem::create_symlink("far/a.txt", folder / "link");
+    AtomicFile file(folder / "link");
+    file.write("new");
+    file.commit();
+    CHECK(std::filesystem::is_symlink(folder / "link"));
+    CHECK(read_bytes(folder / "far/a.txt") == "new");
+    CHECK(std::distance(std::filesystem::directory_iterator(folder / "far"), {}) == 1);
+}
+
 #if defined(__linux__)
 TEST_CASE("a full disk is noticed before the file appears") {
     // /dev/full takes every byte and fails when they are flushed; the temporary file is made to lead there.
@@ -82,5 +114,14 @@ TEST_CASE("a full disk is noticed before the file appears") {
     });
     CHECK(contains(text, "a.txt: cannot write: No space left on device"));
     CHECK(!std::filesystem::exists(folder / "a.txt"));
+}
+
+TEST_CASE("a device is not replaced by a file") {
+    for (const char* device : {"/dev/null", "/dev/full"}) {
+        const std::string text = refusal([&] { AtomicFile file(device); });
+        CHECK(contains(text,
+                       std::string(device) + ": cannot write, expected the name of a file, not of a folder or device"));
+        CHECK(std::filesystem::is_character_file(device));
+    }
 }
 #endif

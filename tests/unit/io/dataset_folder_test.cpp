@@ -56,6 +56,20 @@ TEST_CASE("a folder gives back plan, bodies, samples and failures") {
     CHECK(folder.failure(3) == "no equilibrium");
 }
 
+TEST_CASE("a data set that is there is not made again, and not mixed with another") {
+    const TemporaryFolder temporary;
+    create_limb_dataset(temporary / "data");
+    const std::string plan = read_bytes(temporary / "data/plan.npz");
+    create_limb_dataset(temporary / "data", {});  // the same definition: nothing is touched
+    CHECK(read_bytes(temporary / "data/plan.npz") == plan);
+    const SkeletalLayers<double> mean{LimbMaker()(VectorX<double>::Zero(2)), limb_tree(), {"upper", "lower"}};
+    const std::string text = refusal([&] {
+        DatasetFolder::create(temporary / "data", {{"kind", "limbs"}, {"seed", 2}}, limb_plan(), mean);
+    });
+    CHECK(contains(text, "data: belongs to another data set: seed is 1, expected 2; choose another folder"));
+    CHECK(read_bytes(temporary / "data/plan.npz") == plan);
+}
+
 TEST_CASE("a folder without plan, of another definition or format is refused") {
     const TemporaryFolder temporary;
     const auto refused = [&] { return refusal([&] { const DatasetFolder folder(temporary / "data"); }); };

@@ -94,14 +94,16 @@ TEST_CASE("all samples are computed or failed with a reason; the same bytes for 
     CHECK(all_files(temporary / "stops") == whole);
 }
 
-TEST_CASE("files of other shards that are being written are left alone") {
+TEST_CASE("files that another process is writing are left alone, whatever its shard") {
     const TemporaryFolder temporary;
     create_limb_dataset(temporary / "data");
     const DatasetFolder folder(temporary / "data");
-    const std::filesystem::path other = folder.body_path(1).string() + ".part0";
-    write_bytes(other, "half a body");
-    run(temporary / "data", {.shard = 0, .num_shards = 2}, 1);
-    CHECK(std::filesystem::exists(other));
+    for (const Index body : {0, 1}) {
+        AtomicFile other(folder.body_path(body));
+        other.write("a body");
+        run(temporary / "data", {.shard = 0, .num_shards = 2}, 1);
+        CHECK(std::filesystem::exists(other.temporary_path()));
+    }
 }
 
 TEST_CASE("shards that do not exist, no thread, and layers with other cells are refused") {

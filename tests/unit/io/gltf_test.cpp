@@ -210,12 +210,20 @@ TEST_CASE("what cannot be shown is refused, and no file appears") {
     CHECK(folder.num_files() == 0);
 }
 
-TEST_CASE("an animation is written once") {
+TEST_CASE("an animation is finished by its first writing, which may be repeated") {
     const TemporaryFolder folder;
     GltfAnimation animation(30.0);
     const Index mesh = animation.add_mesh({.name = "m", .triangles = tetrahedron});
     animation.add_frame(mesh, frame(0));
     CHECK(contains(refusal([&] { animation.write(folder / "none/a.glb"); }), "none/a.glb: cannot write"));
-    CHECK(contains(refusal([&] { animation.write(folder / "a.glb"); }), "written once"));
     CHECK(contains(refusal([&] { animation.add_frame(mesh, frame(1)); }), "no mesh 0 to add a frame to"));
+    animation.write(folder / "a.glb");
+    animation.write(folder / "b.glb");
+    CHECK(read_bytes(folder / "a.glb") == read_bytes(folder / "b.glb"));
+
+    GltfAnimation empty(30.0);
+    empty.add_mesh({.name = "m", .triangles = tetrahedron});
+    CHECK(contains(refusal([&] { empty.write(folder / "c.glb"); }), "has no frames"));
+    CHECK(contains(refusal([&] { empty.write(folder / "c.glb"); }),
+                   "expected a gltf animation with meshes whose frames fit"));
 }

@@ -77,8 +77,11 @@ TEST_CASE("the checkpoint of another training is refused") {
     std::filesystem::remove(run.path);
     CHECK(run.train_for(3).status == TrainingStatus::cancelled);
     run.checkpoint.description = "lines";
-    CHECK_THROWS_WITH_AS(static_cast<void>(run.train_for(3)),
-                         (run.path.string() + ": belongs to another training (points), expected lines").c_str(),
-                         InvalidInput);
+    CHECK_THROWS_WITH_AS(
+        static_cast<void>(run.train_for(3)),
+        (run.path.string() + ": belongs to another training (points), expected lines; remove it, or choose "
+                             "another name, to begin afresh")
+            .c_str(),
+        InvalidInput);
     std::filesystem::remove(run.path);
 }
