@@ -85,7 +85,7 @@ say "Configuring in $build"
 if [ "$task" = demo ]; then
     cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DSOFTTISSUE_BUILD_EXAMPLES=ON -DSOFTTISSUE_BUILD_TESTS=OFF -DSOFTTISSUE_BUILD_BENCHMARKS=OFF
-    say "Building the soft-tissue avatar (a minute or two)"
+    say "Building the soft-tissue avatar (some minutes)"
     cmake --build "$build" --target soft_tissue_avatar
 
     results=results/soft_tissue_avatar
