@@ -85,6 +85,8 @@ struct LayeredBodyOptions {
         require(cleanup.largest_fat_fraction > S(0) && cleanup.largest_fat_fraction < S(1),
                 "layered body: cleanup.largest_fat_fraction = ", cleanup.largest_fat_fraction,
                 ", expected a value between 0 and 1");
+        require(accepted_share >= S(0) && accepted_share <= S(1), "layered body: accepted_share = ", accepted_share,
+                ", expected 0 to 1");
         require(tissue_weight_rounds >= 0 && weight_rounds >= 0, "layered body: rounds of smoothing ",
                 tissue_weight_rounds, " and ", weight_rounds, ", expected >= 0");
         require_map(fat_thickness, "fat_thickness", num_body_vertices);
@@ -93,7 +95,7 @@ struct LayeredBodyOptions {
 
 private:
     static void require_positive(S value, const char* name) {
-        require(value > S(0), "layered body: ", name, " = ", value, ", expected > 0");
+        require(std::isfinite(value) && value > S(0), "layered body: ", name, " = ", value, ", expected > 0");
     }
 
     static void require_map(const VectorX<S>& map, const char* name, Index num_body_vertices) {

@@ -51,15 +51,19 @@ void validate_options(const SoftLayerOptions<S>& options) {
         require(condition, "soft layer: ", name, " = ", value, ", expected ", expectation);
     };
     check(options.num_layers >= 1, "num_layers", options.num_layers, ">= 1");
-    check(options.minimum_thickness > S(0), "minimum_thickness", options.minimum_thickness, "> 0");
-    check(options.full_thickness >= options.minimum_thickness, "full_thickness", options.full_thickness,
-          ">= minimum_thickness");
+    const auto is_positive = [](S value) { return std::isfinite(value) && value > S(0); };
+    check(is_positive(options.minimum_thickness), "minimum_thickness", options.minimum_thickness, "> 0");
+    check(std::isfinite(options.full_thickness) && options.full_thickness >= options.minimum_thickness,
+          "full_thickness", options.full_thickness, ">= minimum_thickness");
     check(options.bone_fraction > S(0) && options.bone_fraction < S(1), "bone_fraction", options.bone_fraction,
           "a value between 0 and 1");
-    check(options.bone_radius >= S(0), "bone_radius", options.bone_radius, ">= 0");
-    check(options.decay_distance > S(0), "decay_distance", options.decay_distance, "> 0");
+    check(std::isfinite(options.bone_radius) && options.bone_radius >= S(0), "bone_radius", options.bone_radius,
+          ">= 0");
+    check(is_positive(options.decay_distance), "decay_distance", options.decay_distance, "> 0");
     check(options.projection_rounds >= 0, "projection_rounds", options.projection_rounds, ">= 0");
     check(options.validity_margin > S(0) && options.validity_margin < S(1), "validity_margin", options.validity_margin,
+          "a value between 0 and 1");
+    check(options.wanted_cosine > S(0) && options.wanted_cosine < S(1), "wanted_cosine", options.wanted_cosine,
           "a value between 0 and 1");
     check(options.smallest_cosine > S(0) && options.smallest_cosine < S(1), "smallest_cosine", options.smallest_cosine,
           "a value between 0 and 1");

@@ -5,7 +5,8 @@
 /// Equation    E(d) = 1/(2 dt^2) sum_i m_i |x_i - xt_i|^2,  x = p + A d,  xt = x_n + dt v_n + dt^2 a
 /// Shapes      masses vertices [kg], target xt 3 x vertices [m]
 /// Units       d m, energy J, gradient N, Hessian N/m (block diagonal, m/dt^2 A^T A)
-/// Refuses     a time step that is not positive, masses that are negative or not finite
+/// Refuses     a time step that is not positive or whose square leaves the range of the scalar, masses that are negative or not
+///             finite
 /// Source      Romero et al. 2020, eq. (3), discretised by implicit Euler as a minimisation
 /// Tests       tests/unit/energy/inertia_test.cpp, tests/laws/energy_laws_test.cpp
 #pragma once
@@ -33,6 +34,8 @@ public:
     /// Vertices without mass take no part.
     Inertia(VectorX<Scalar> masses, Scalar time_step) : masses_(std::move(masses)), time_step_(time_step) {
         require(std::isfinite(time_step) && time_step > Scalar(0), "time step = ", time_step, " s, expected > 0");
+        require(std::isnormal(time_step * time_step), "time step = ", time_step,
+                " s, expected a square within the range of the numbers");
         for (Index v = 0; v < masses_.size(); ++v) {
             require(std::isfinite(masses_(v)) && masses_(v) >= Scalar(0), "mass of vertex ", v, " = ", masses_(v),
                     " kg, expected >= 0");

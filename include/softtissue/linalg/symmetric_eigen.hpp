@@ -4,7 +4,8 @@
 ///
 /// What        H = V diag(values) V^T; values in no particular order, V orthogonal.
 /// Shapes      H, V: N x N, N up to about a dozen; only the lower triangle of H is read
-/// Valid       finite H. Up to 4 x 4 small eigenvalues of graded matrices keep their relative accuracy.
+/// Valid       every finite H. Up to 4 x 4 small eigenvalues of graded matrices keep their relative accuracy. Where H is not
+///             finite, all is NaN. No finite matrix was met that needs the last of the sweeps or steps that are allowed.
 ///             Packs: a converged lane stands still while others go on, so that it never depends on them.
 /// Source      Golub & Van Loan 2013, sec. 8.5 (Jacobi); tridiagonal_ql.hpp
 /// Why         plain loops: a fixed-size 9x9 eigensolver of Eigen costs eleven seconds of compile time, this one none
@@ -110,10 +111,12 @@ template <RealLanes Scalar, int N>
 SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
     using std::abs;
     using std::max;
-    Scalar largest(0);
+    const Scalar zero(0);
+    Scalar largest(0), not_a_number(0);
     for (int j = 0; j < N; ++j) {
         for (int i = j; i < N; ++i) {
             largest = max(largest, Scalar(abs(lower(i, j))));
+            not_a_number += lower(i, j) * zero;
         }
     }
     // With a largest entry of 1 no square leaves the range of the scalar.
@@ -130,7 +133,14 @@ SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& low
         result.values = detail::diagonalise_by_rotations(result.vectors);
     }
     for (int i = 0; i < N; ++i) {
-        result.values(i) = scale.original(result.values(i));
+        result.values(i) = scale.original(result.values(i)) + not_a_number;
+    }
+    if (!all_of(not_a_number == zero)) {
+        for (int j = 0; j < N; ++j) {
+            for (int i = 0; i < N; ++i) {
+                result.vectors(i, j) += not_a_number;
+            }
+        }
     }
     return result;
 }

@@ -5,7 +5,7 @@
 /// What        at(cell) returns the CorotatedLinear of a cell by value
 /// Shapes      rotations 3 x 3 cells; moduli [Pa], one set per cell
 /// Refuses     in the constructor, naming the cell: moduli that CorotatedLinear refuses; set_rotations(): another number of
-///             rotations (InvalidInput). That they are rotations is the caller's word.
+///             rotations, one that is not finite (InvalidInput). That they are rotations is the caller's word.
 /// Source      Capell et al. 2005; Nolte et al. 2026, eq. (22) and (23)
 /// Tests       tests/unit/material/corotated_linear_field_test.cpp
 #pragma once
@@ -39,9 +39,10 @@ public:
     Index num_cells() const { return Index(moduli_.size()); }
 
     void set_rotations(std::span<const Matrix3<Scalar>> rotations) {
-        require(Index(rotations.size()) == num_cells(), "co-rotated linear: ", rotations.size(), " rotations, expected ",
-                num_cells());
+        require(Index(rotations.size()) == num_cells(), "co-rotated linear: ", rotations.size(),
+                " rotations, expected ", num_cells());
         for (Index c = 0; c < num_cells(); ++c) {
+            require(rotations[size_t(c)].allFinite(), "co-rotated linear: rotation of cell ", c, " is not finite");
             rotations_.template middleCols<3>(3 * c) = rotations[size_t(c)];
         }
     }

@@ -5,7 +5,8 @@
 /// What        YoungPoisson (E, nu) and LameParameters (mu, lambda)
 /// Equation    mu = E / (2 (1 + nu)),  lambda = E nu / ((1 + nu) (1 - 2 nu))
 /// Units       E, mu, lambda in Pa; nu dimensionless
-/// Refuses     E <= 0, nu outside (-1, 0.5), mu <= 0, 2 mu + 3 lambda <= 0, NaN, infinity (InvalidInput)
+/// Refuses     E <= 0, nu outside (-1, 0.5), mu <= 0, 2 mu + 3 lambda <= 0, NaN, infinity, E or nu for which mu or lambda is
+///             infinite (InvalidInput)
 /// Tests       tests/unit/material/elastic_constants_test.cpp
 #pragma once
 
@@ -64,7 +65,14 @@ LameParameters<Scalar> lame_parameters(const YoungPoisson<Scalar>& constants) {
     require_poisson_ratio(constants.poisson_ratio, "poisson_ratio");
     const Scalar E = constants.young_modulus;
     const Scalar nu = constants.poisson_ratio;
-    return {E / (Scalar(2) * (Scalar(1) + nu)), E * nu / ((Scalar(1) + nu) * (Scalar(1) - Scalar(2) * nu))};
+    const LameParameters<Scalar> lame{E / (Scalar(2) * (Scalar(1) + nu)),
+                                      E * nu / ((Scalar(1) + nu) * (Scalar(1) - Scalar(2) * nu))};
+    using std::abs;
+    constexpr RealOf<Scalar> largest = std::numeric_limits<RealOf<Scalar>>::max();
+    require(value_of(lame.mu) <= largest && abs(value_of(lame.lambda)) <= largest, "young_modulus = ", value_of(E),
+            " and poisson_ratio = ", value_of(nu), " give mu = ", value_of(lame.mu),
+            ", lambda = ", value_of(lame.lambda), ", expected finite numbers");
+    return lame;
 }
 
 /// (E, nu) of (mu, lambda).

@@ -12,6 +12,7 @@
 /// Tests       tests/unit/mesh/delaunay_tetrahedra_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/mesh/grid_predicates.hpp>
@@ -209,7 +210,7 @@ private:
 
     /// The cell of p and the face opposite to corner k of the cavity's cell c.
     void add_cell(std::int32_t c, int k, std::int32_t p, std::vector<OpenFace>& open) {
-        const auto added = static_cast<std::int32_t>(cells_.size());
+        const std::int32_t added = checked_index(Index(cells_.size()), "Delaunay tets: cells, erased ones included");
         Cell cell = cells_[size_t(c)];
         cell.corners[size_t(k)] = p;
         cell.is_erased = false;

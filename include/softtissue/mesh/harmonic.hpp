@@ -15,12 +15,13 @@
 ///             stay between the smallest and the largest prescribed one if Q has no positive entry off the diagonal (no
 ///             obtuse angle); with some they can leave the range slightly: clamp and normalise skinning weights.
 /// Refuses     no prescribed vertex, one out of range or listed twice, a vertex that no path in Q joins to a prescribed
-///             one, values of another number of rows (InvalidInput names the vertex)
+///             one, values of another number of rows or not finite (InvalidInput names the vertex)
 /// Cost        one sparse Cholesky factorisation; per column two triangular solves. A sparse argument costs only for
 ///             its columns that are not empty.
 /// Tests       tests/unit/mesh/harmonic_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -59,6 +60,7 @@ public:
     /// The values at all vertices; those at prescribed vertices are copied.
     MatrixX<Scalar> interpolate(ConstRef<MatrixX<Scalar>> values) const {
         const Index components = components_of(values.rows());
+        require_finite(values, components);
         MatrixX<Scalar> result(components * num_vertices(), values.cols());
         for (Index d = 0; d < components; ++d) {
             const Eigen::Map<const MatrixX<Scalar>, 0, Strides> given(
@@ -79,12 +81,14 @@ public:
                 }
             }
         }
+        require(result.allFinite(), "interpolation: the values are too large for the range of the numbers");
         return result;
     }
 
     /// The same for sparse values: the result keeps what exceeds `smallest` in magnitude, and the prescribed entries.
     SparseMatrix interpolate(const SparseMatrix& values, Scalar smallest) const {
         const Index components = components_of(values.rows());
+        checked_index(components * num_vertices(), "interpolation: rows of the result");
         std::vector<Index> filled;
         for (Index column = 0; column < values.cols(); ++column) {
             if (values.col(column).nonZeros() > 0) {
@@ -109,6 +113,7 @@ public:
                 }
             }
         }
+        checked_index(Index(entries.size()), "interpolation: entries of the result");
         SparseMatrix result(components * num_vertices(), values.cols());
         result.setFromTriplets(entries.begin(), entries.end());
         return result;
@@ -177,6 +182,13 @@ private:
             factor_ = std::make_unique<Eigen::SimplicialLDLT<SparseMatrix>>(free_block);
             require(factor_->info() == Eigen::Success && (factor_->vectorD().array() > Scalar(0)).all(),
                     "interpolation: the energy of the free vertices is not positive definite");
+        }
+    }
+
+    void require_finite(ConstRef<MatrixX<Scalar>> values, Index components) const {
+        for (Index row = 0; row < values.rows() && !values.allFinite(); ++row) {
+            require(values.row(row).allFinite(), "interpolation: a value of prescribed vertex ",
+                    prescribed_[size_t(row / components)], " is not finite");
         }
     }
 

@@ -6,7 +6,7 @@
 /// Equation    F_p^res = exp(Q_p),  T_p = R_p F_p^res,  R_p the blended rotation of the bones
 /// Shapes      Q and residuals 9 x cells, a 3x3 a column, row after row (as PyTorch flattens it); bones: one unit quaternion
 ///             a joint; targets 3 x 3 cells (T_p in columns 3p to 3p + 2)
-/// Refuses     arrays of different sizes (InvalidInput)
+/// Refuses     arrays of different sizes, a bone that is not finite (InvalidInput)
 /// Source      Nolte et al. 2026, eq. (11), (12) and (14) to (16)
 /// Cost        that of the exponentials, 8 flop a bone and 75 a cell. Nothing is allocated once the targets have their size.
 ///             Same bits for every executor.
@@ -61,8 +61,7 @@ void rotated_exponentials_into(ConstRef<Matrix9X<N>> Q, const BlendedRotations<S
                                Matrix3X<S>& targets, const E& executor = {}) {
     require(Q.cols() == blended.num_rows() && residuals.cols() == Q.cols(), "rotated exponentials: ", Q.cols(),
             " matrices and room for ", residuals.cols(), ", expected ", blended.num_rows());
-    require(Index(bones.size()) == blended.num_joints(), "rotated exponentials: ", bones.size(), " bones, expected ",
-            blended.num_joints());
+    blended.require_bones(bones);
     targets.resize(3, 3 * Q.cols());
     for_each_exponential_block<N>(
         Q,

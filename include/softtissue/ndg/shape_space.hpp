@@ -6,7 +6,8 @@
 /// Equation    PCA: R^(3 N_v) -> R^d, b = diag(s)^-1 C^T (vec X - mean)
 /// Shapes      rest positions 3 x vertices [m]; coefficients in standard deviations
 /// Valid       any body of the same connectivity; one unlike those of the training gets large coefficients
-/// Refuses     bodies of different sizes, what principal_components() refuses (InvalidInput)
+/// Refuses     bodies of different sizes, what principal_components() refuses, positions or coefficients that are not finite
+///             (InvalidInput)
 /// Source      Nolte et al. 2026, eq. (13)
 /// Tests       tests/unit/ndg/shape_space_test.cpp
 #pragma once
@@ -17,6 +18,7 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/principal_components.hpp>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -62,10 +64,17 @@ public:
     VectorX<S> encode(const Matrix3X<S>& rest_positions) const {
         require(rest_positions.cols() == num_vertices(), "shape space: a body of ", rest_positions.cols(),
                 " vertices, expected ", num_vertices());
+        for (Index v = 0; v < num_vertices(); ++v) {
+            require(rest_positions.col(v).allFinite(), "shape space: rest position of vertex ", v, " is not finite");
+        }
         return components_.encode(rest_positions.reshaped());
     }
 
     Matrix3X<S> decode(const VectorX<S>& coefficients) const {
+        for (Index k = 0; k < coefficients.size(); ++k) {
+            require(std::isfinite(coefficients(k)), "shape space: coefficient ", k, " = ", coefficients(k),
+                    ", expected a finite value");
+        }
         return components_.decode(coefficients).reshaped(3, num_vertices());
     }
 

@@ -23,6 +23,18 @@ struct AffineTransform {
     /// A x + t.
     Vector3<Scalar> operator()(const Vector3<Scalar>& x) const { return linear * x + translation; }
 
+    /// Every entry.
+    bool is_finite() const {
+        Scalar zero(0);
+        for (int k = 0; k < 9; ++k) {
+            zero += linear.data()[k] * Scalar(0);
+        }
+        for (int k = 0; k < 3; ++k) {
+            zero += translation(k) * Scalar(0);
+        }
+        return value_of(zero) == RealOf<Scalar>(0);
+    }
+
     /// The map that applies `inner` first.
     AffineTransform operator*(const AffineTransform& inner) const {
         return {linear * inner.linear, linear * inner.translation + translation};

@@ -7,6 +7,7 @@
 /// Shapes      bone quaternions (w, x, y, z), one per joint; result one 3x3 rotation per row.
 /// Valid       every row: |sum| is at least the largest weight. Continuous in the pose except where a bone and the
 ///             one of largest weight differ by exactly pi.
+/// Refuses     BlendedRotations: bones or rotations of another number, a bone that is not finite (InvalidInput names it)
 /// Source      Nolte et al. 2026, eq. (11); Kavan et al. 2008
 /// Cost        8 flop per bone, 30 flop and a square root per row
 /// Tests       tests/unit/skinning/blended_rotation_test.cpp
@@ -81,12 +82,20 @@ public:
         return {entries_.data() + offsets_[size_t(r)], entries_.data() + offsets_[size_t(r) + 1]};
     }
 
+    /// Throws InvalidInput unless there is a quaternion for every joint, without NaN or infinity.
+    void require_bones(std::span<const Quaternion<S>> bones) const {
+        require(Index(bones.size()) == num_joints_, "blended rotations: ", bones.size(), " bones, expected ",
+                num_joints_);
+        for (size_t j = 0; j < bones.size(); ++j) {
+            require(bones[j].allFinite(), "blended rotations: quaternion of joint ", j, " is not finite");
+        }
+    }
+
     /// Writes one rotation per row; allocates nothing. Same bits for every executor.
     template <Executor Exec = SequentialExecutor>
     void rotations_into(std::span<const Quaternion<S>> bones, std::span<Matrix3<S>> rotations,
                         const Exec& executor = {}) const {
-        require(Index(bones.size()) == num_joints_, "blended rotations: ", bones.size(), " bones, expected ",
-                num_joints_);
+        require_bones(bones);
         require(Index(rotations.size()) == num_rows(), "blended rotations: ", rotations.size(), " rotations, expected ",
                 num_rows());
         executor.for_each_range(num_rows(), [&](Index begin, Index end) {

@@ -74,7 +74,8 @@ struct InverseKinematicsOptions {
 enum class InverseKinematicsStatus {
     converged,
     max_iterations,
-    stalled,  ///< no step decreases the error any more, within rounding
+    stalled,     ///< no step decreases the error any more, within rounding
+    not_finite,  ///< goals or pose too far away for the range of the numbers
 };
 
 template <RealScalar S>
@@ -124,6 +125,10 @@ public:
                 return report;
             }
             const MatrixX<S> normal = J.transpose() * J;
+            if (!std::isfinite(normal.sum()) || !std::isfinite(gradient.sum()) || !std::isfinite(r.squaredNorm())) {
+                report.status = InverseKinematicsStatus::not_finite;
+                return report;
+            }
             const S largest = normal.diagonal().maxCoeff();
             damping = std::max(damping, (report.iterations == 0 ? S(1e-3) : least_damping) * largest);
             for (bool accepted = false; !accepted;) {
@@ -139,7 +144,7 @@ public:
                     growth = S(2);
                     pose = std::move(trial);
                     r = trial_residual;
-                } else if (damping > largest / std::numeric_limits<S>::epsilon()) {
+                } else if (damping * std::numeric_limits<S>::epsilon() > largest || !(damping > S(0))) {
                     report.status = InverseKinematicsStatus::stalled;
                     return report;
                 } else {
@@ -247,7 +252,7 @@ private:
     /// Is the cosine of the angle between r and every column of J small?
     bool is_orthogonal(const MatrixX<S>& J, const VectorX<S>& gradient, S residual) const {
         for (Index i = 0; i < J.cols(); ++i) {
-            if (std::abs(gradient(i)) > options_.cosine_tolerance * J.col(i).norm() * residual) {
+            if (!(std::abs(gradient(i)) <= options_.cosine_tolerance * J.col(i).norm() * residual)) {
                 return false;
             }
         }

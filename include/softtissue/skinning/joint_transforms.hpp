@@ -6,7 +6,7 @@
 /// Equation    T_j = T_parent(j) o (rotation R_j about the rest joint c_j):
 ///             A_j = A_p R_j,  t_j = A_p c_j + t_p - A_j c_j;   above the root: A = I, t = translation of the pose
 /// Shapes      joints 3 x num_joints (rest) [m]; pose: see skinning/pose.hpp; one transform per joint.
-/// Refuses     joints or pose of another skeleton (InvalidInput names the sizes).
+/// Refuses     joints or pose of another skeleton, a pose that is not finite (InvalidInput names sizes or joint).
 /// Source      Loper et al. 2015 (SMPL), eq. (3)-(4): the root turns about its own joint, the translation comes last
 /// Cost        one quaternion and one 3x3 product per joint
 /// Tests       tests/unit/skinning/joint_transforms_test.cpp
@@ -38,6 +38,7 @@ void joint_transforms_into(const KinematicTree& tree, const Matrix3X<S>& joints,
             tree.num_joints());
     require(pose.rotation_vectors.cols() == tree.num_joints(), "joint_transforms: the pose has ",
             pose.rotation_vectors.cols(), " joints, expected ", tree.num_joints());
+    pose.require_finite("joint_transforms");
     SOFTTISSUE_ASSERT(Index(transforms.size()) == tree.num_joints());
     for (const std::int32_t j : tree.order()) {
         AffineTransform<S> parent;

@@ -8,6 +8,7 @@
 /// Tests       tests/unit/skinning/kinematic_tree_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 
@@ -23,7 +24,7 @@ public:
     /// `parents[j]` is the parent joint of j; exactly one joint, the root, has no_parent. Any order is accepted.
     explicit KinematicTree(std::vector<std::int32_t> parents) : parents_(std::move(parents)) {
         require(!parents_.empty(), "kinematic tree: no joints, expected at least one");
-        const auto count = static_cast<std::int32_t>(parents_.size());
+        const std::int32_t count = checked_index(Index(parents_.size()), "kinematic tree: joints");
         std::int32_t root = no_parent;
         for (std::int32_t j = 0; j < count; ++j) {
             const std::int32_t parent = parents_[size_t(j)];

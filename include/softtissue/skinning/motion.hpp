@@ -37,10 +37,10 @@ struct Motion {
         for (Index t = 0; t < num_frames(); ++t) {
             const Pose<Scalar>& pose = poses[size_t(t)];
             require(pose.rotation_vectors.cols() == num_joints, source, ": frame ", t, " has ",
-                    pose.rotation_vectors.cols(), " joints, expected ", num_joints,
-                    " (a motion for another skeleton)");
+                    pose.rotation_vectors.cols(), " joints, expected ", num_joints, " (a motion for another skeleton)");
             for (Index j = 0; j < num_joints; ++j) {
-                require(pose.rotation_vectors.col(j).allFinite(), source, ": frame ", t, ", joint ", j,
+                // an angle whose square overflows has no sine either
+                require(std::isfinite(pose.rotation_vectors.col(j).squaredNorm()), source, ": frame ", t, ", joint ", j,
                         ": rotation is not finite");
             }
             require(pose.translation.allFinite(), source, ": frame ", t, ": translation is not finite");

@@ -9,11 +9,13 @@
 ///             Rotation vectors are principal (|r| <= pi): the rotation is continuous, the vector jumps at pi.
 ///             However wildly a joint turns, the spline's quaternion is longer than 0.3 before it is normalised:
 ///             neighbouring frames lie within a quarter turn of the 4-sphere, and the far weights are small.
-/// Refuses     what Motion::validate refuses, a rate that is not positive (InvalidInput).
+/// Refuses     what Motion::validate refuses, a rate that is not positive or gives more frames than 32-bit indices can number
+///             (InvalidInput).
 /// Source      Romero et al. 2020, sec. 4.1 needs accelerations of the pose, hence C2; de Boor 2001, ch. IV
 /// Tests       tests/unit/skinning/resample_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/linalg/quaternion.hpp>
@@ -59,13 +61,17 @@ Motion<S> resample(const Motion<S>& motion, std::type_identity_t<S> new_rate) {
     const UniformCubicSpline<S> spline(detail::unrolled_curves(motion, num_joints));
     // The last frame belongs to the result where its time is met within rounding.
     const S exact_count = S(motion.num_frames() - 1) * (new_rate / motion.frame_rate);
+    require(double(exact_count) < double(largest_index), "resample: frame rate from ", motion.frame_rate, " to ",
+            new_rate, " gives ", exact_count, " frames, expected at most ", largest_index);
     const S rounding = S(4) * std::numeric_limits<S>::epsilon() * exact_count;
     const Index num_frames = Index(std::floor(exact_count + rounding)) + 1;
 
     Motion<S> result;
     result.frame_rate = new_rate;
     for (Index k = 0; k < num_frames; ++k) {
-        const VectorX<S> values = spline(S(k) * (motion.frame_rate / new_rate));
+        const VectorX<S> values = spline(k == 0 ? S(0) : S(k) * (motion.frame_rate / new_rate));
+        require(values.allFinite(), "resample: translations at new frame ", k,
+                " are too large for the range of the numbers");
         Pose<S> pose = Pose<S>::rest(num_joints);
         for (Index j = 0; j < num_joints; ++j) {
             pose.rotation_vectors.col(j) = rotation_vector_from_quaternion<S>(values.template segment<4>(4 * j));

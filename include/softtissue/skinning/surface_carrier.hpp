@@ -8,7 +8,7 @@
 ///             to one row per volume vertex (mesh/harmonic.hpp makes one; any callable will do).
 /// Valid       matched vertices take the surface's rows exactly, whatever the interpolator returns for them.
 /// Refuses     matches out of range or twice, interpolated values of another size or not finite, a vertex that is
-///             left without weight (InvalidInput names the vertex).
+///             left without weight (InvalidInput names the vertex); more than 32-bit indices can number.
 /// Source      Romero et al. 2020, eq. (2)
 /// Departs     Cotangent interpolation may give small negative weights: these and those below smallest_weight are
 ///             dropped and the rest is normalised. Interpolated pose blend shapes below smallest_pose_direction are
@@ -16,6 +16,7 @@
 /// Tests       tests/unit/skinning/surface_carrier_test.cpp
 #pragma once
 
+#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
@@ -57,17 +58,18 @@ public:
     /// Keeps references to `matches` and `interpolate`.
     SurfaceCarrier(Index num_surface_vertices, Index num_volume_vertices, std::span<const VertexMatch> matches,
                    const Interpolator& interpolate, CarryOptions<S> options = {})
-        : num_surface_(num_surface_vertices),
+        : num_surface_(checked_index(num_surface_vertices, "surface carrier: vertices of the surface")),
           num_volume_(num_volume_vertices),
           matches_(matches),
-          is_matched_(size_t(num_volume_vertices), false),
+          is_matched_(size_t(checked_index(3 * num_volume_vertices, "surface carrier: coordinates of the volume") / 3),
+                      false),
           interpolate_(interpolate),
           options_(options) {
         for (const VertexMatch& match : matches) {
-            require(match.volume >= 0 && match.volume < num_volume_ && match.surface >= 0 &&
-                        match.surface < num_surface_,
-                    "surface carrier: match of volume vertex ", match.volume, " with surface vertex ", match.surface,
-                    ", expected below ", num_volume_, " and ", num_surface_);
+            require(
+                match.volume >= 0 && match.volume < num_volume_ && match.surface >= 0 && match.surface < num_surface_,
+                "surface carrier: match of volume vertex ", match.volume, " with surface vertex ", match.surface,
+                ", expected below ", num_volume_, " and ", num_surface_);
             require(!is_matched_[size_t(match.volume)], "surface carrier: volume vertex ", match.volume,
                     " is matched twice");
             is_matched_[size_t(match.volume)] = true;
@@ -122,8 +124,7 @@ public:
         const MatrixX<S> carried = rows(values);
         MatrixX<S> result(3 * num_volume_, surface.cols());
         for (Index s = 0; s < surface.cols(); ++s) {
-            Eigen::Map<Matrix3X<S>>(result.col(s).data(), 3, num_volume_) =
-                carried.middleCols(3 * s, 3).transpose();
+            Eigen::Map<Matrix3X<S>>(result.col(s).data(), 3, num_volume_) = carried.middleCols(3 * s, 3).transpose();
         }
         return result;
     }
@@ -151,6 +152,7 @@ public:
                 }
             }
         }
+        checked_index(Index(entries.size()), "surface carrier: entries of pose directions");
         SparseMatrix result(3 * num_volume_, columns.cols());
         result.setFromTriplets(entries.begin(), entries.end());
         return result;

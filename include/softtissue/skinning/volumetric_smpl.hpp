@@ -7,8 +7,8 @@
 ///             p_i = A_i (x_i + delta_i) + t_i with (A_i, t_i) = the policy's blend of the joint transforms
 /// Shapes      vertices 3 x n [m]; joints 3 x num_joints [m]; beta up to num_shapes entries [standard deviations];
 ///             pose blend shapes see skinning/smpl_body.hpp.
-/// Refuses     a body that SmplBody::validate refuses, more shape coefficients than directions, a pose of another
-///             skeleton, what SurfaceCarrier refuses (InvalidInput).
+/// Refuses     a body that SmplBody::validate refuses, more shape coefficients than directions, a coefficient or pose that is
+///             not finite, a pose of another skeleton, what SurfaceCarrier refuses (InvalidInput).
 /// Source      Romero et al. 2020, eq. (1)-(2), sec. 3.4; Loper et al. 2015 (SMPL)
 /// Departs     joints are always regressed from the surface, also for a volume
 /// Cost        per pose and vertex: its entries of P, the policy's blend, one 3x3 product with a vector
@@ -27,6 +27,7 @@
 #include <softtissue/skinning/smpl_body.hpp>
 #include <softtissue/skinning/surface_carrier.hpp>
 
+#include <cmath>
 #include <concepts>
 #include <span>
 #include <utility>
@@ -192,12 +193,15 @@ private:
                 directions.cols());
         Matrix3X<S> result = mean;
         for (Index s = 0; s < betas.size(); ++s) {
+            require(std::isfinite(betas(s)), "shape: coefficient ", s, " = ", betas(s), ", expected a finite value");
             result += betas(s) * Eigen::Map<const Matrix3X<S>>(directions.col(s).data(), 3, mean.cols());
         }
+        require(result.allFinite(), "shape: the coefficients move vertices out of the range of the numbers");
         return result;
     }
 
     void require_pose(const Pose<S>& pose) const {
+        pose.require_finite("pose");
         require(pose.rotation_vectors.cols() == num_joints(), "pose has ", pose.rotation_vectors.cols(),
                 " joints, expected ", num_joints());
     }

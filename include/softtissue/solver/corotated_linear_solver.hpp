@@ -42,7 +42,8 @@ public:
     CorotatedLinearSolver(const CorotatedLinearSolver&) = delete;
     CorotatedLinearSolver& operator=(const CorotatedLinearSolver&) = delete;
 
-    /// Replaces the free columns of x; false where the prescribed vertices leave the system singular (x is left as it was).
+    /// Replaces the free columns of x; false, and x is left as it was, where the prescribed vertices leave the system singular or
+    /// the result would not be finite.
     [[nodiscard]] bool solve_into(std::span<const Matrix3<Scalar>> rotations, Matrix3X<Scalar>& x) {
         require(x.cols() == rest_positions_.cols(), "co-rotated linear: ", x.cols(), " positions, expected ",
                 rest_positions_.cols());
@@ -51,7 +52,7 @@ public:
         const VectorX<Scalar> force = -objective_.gradient(displacement_);
         const LinearSolveResult result = linear_solver_.solve(objective_.hessian(displacement_, PsdFilter::none), force,
                                                               Scalar(0), correction_, objective_.executor());
-        if (!result.is_positive_definite) {
+        if (!result.is_positive_definite || !correction_.allFinite()) {
             return false;
         }
         objective_.prescribed().add_into(correction_, Scalar(1), x);

@@ -5,7 +5,8 @@
 /// Equation    d_{n+1} = argmin 1/(2 dt^2) |x - xt|_M^2 + sum of terms,  x = p + A d,  xt = x_n + dt v_n + dt^2 a,
 ///             v_{n+1} = (x_{n+1} - x_n) / dt;  p, A of the new time (a Placement), prescribed columns of d as given
 /// Shapes      positions, velocities, displacement 3 x vertices [m, m/s, m]; masses vertices [kg]
-/// Refuses     a time step that is not positive, masses that are not positive at free vertices or not one per vertex
+/// Refuses     a time step that is not positive or whose square leaves the range of the scalar, masses that are not positive at
+///             free vertices or not one per vertex, an acceleration or a state that is not finite (InvalidInput names the vertex)
 /// Source      Romero et al. 2020, eq. (3)
 /// Tests       tests/unit/solver/implicit_euler_test.cpp, reference dynamics in tests/reference_check
 #pragma once
@@ -49,11 +50,18 @@ public:
     ImplicitEuler& operator=(const ImplicitEuler&) = delete;
 
     const DynamicState<Scalar>& state() const { return state_; }
-    void set_state(const DynamicState<Scalar>& state) { state_ = state; }
+    void set_state(const DynamicState<Scalar>& state) {
+        require_finite(state.positions, "position");
+        require_finite(state.velocities, "velocity");
+        state_ = state;
+    }
     Scalar time_step() const { return inertia_.time_step(); }
 
     /// Acceleration of every vertex that no term knows, such as gravity [m/s^2]; zero by default.
-    void set_acceleration(const Vector3<Scalar>& acceleration) { acceleration_ = acceleration; }
+    void set_acceleration(const Vector3<Scalar>& acceleration) {
+        require(acceleration.allFinite(), "implicit Euler: the acceleration is not finite");
+        acceleration_ = acceleration;
+    }
 
     /// Where the displaced vertices of the step in preparation are in the world; set before step().
     Placement<Scalar>& placement() { return placement_; }
@@ -104,6 +112,15 @@ private:
         }
         if (best != &displacement) {
             displacement = *best;
+        }
+    }
+
+    void require_finite(const Matrix3X<Scalar>& values, const char* name) const {
+        require(values.cols() == objective_.prescribed().num_vertices(), "implicit Euler: ", values.cols(),
+                " columns of ", name, ", expected one for each of ", objective_.prescribed().num_vertices(),
+                " vertices");
+        for (Index v = 0; v < values.cols(); ++v) {
+            require(values.col(v).allFinite(), "implicit Euler: ", name, " of vertex ", v, " is not finite");
         }
     }
 

@@ -6,7 +6,7 @@
 /// Equation    local  R_c = argmin |F_c(x) - R|;   global  Poisson reconstruction with the targets R_c
 /// Shapes      x 3 x vertices [m], prescribed columns given, the free ones are the start
 /// Valid       E never increases. Converges linearly; stops after max_iterations or when no vertex moves by more than
-///             step_tolerance.
+///             step_tolerance; not_finite, and x is the last finite shape, where numbers leave the range of the scalar.
 /// Source      Komaritzan & Botsch 2018; Bouaziz et al. 2014; Nolte et al. 2026, sec. 5.2.2 (30 iterations)
 /// Cost        per iteration one rotation fit per cell and one Poisson solve; allocates on the first call only
 /// Tests       tests/unit/solver/local_global_test.cpp
@@ -57,7 +57,10 @@ public:
         while (report.iterations < options.max_iterations) {
             last_ = x;
             fit_targets(x, report.iterations == 0, executor);
-            poisson_->solve_into(targets_, x, executor);
+            if (!poisson_->solve_finite_into(targets_, x, executor)) {
+                report.status = SolveStatus::not_finite;
+                break;
+            }
             ++report.iterations;
             report.step = (x - last_).colwise().norm().maxCoeff();
             if (report.step <= options.step_tolerance) {

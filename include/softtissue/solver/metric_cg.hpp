@@ -5,7 +5,7 @@
 /// What        NewtonLinearSolver: the Hessian enters through products only
 /// Metric      solve_into(r, z): z = the product of the metric's inverse with r (solver/scalar_metric.hpp)
 /// Source      Nocedal & Wright 2006, alg. 5.3
-/// Departs     stops at negative curvature and reports an indefinite Hessian
+/// Departs     stops at negative curvature and reports an indefinite Hessian; the same where a number leaves the range of the scalar
 /// Tests       tests/unit/solver/metric_cg_test.cpp
 #pragma once
 
@@ -13,6 +13,8 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/solver/concepts.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
+
+#include <limits>
 
 namespace softtissue {
 
@@ -37,7 +39,11 @@ public:
         direction_ = z_;
         Scalar rz = residual_.dot(z_);
         int iteration = 0;
-        while (iteration < max_iterations && residual_.norm() > target) {
+        // written so that numbers that are not finite do not pass for a solution
+        if (!(target <= std::numeric_limits<Scalar>::max())) {
+            return {.is_positive_definite = false, .iterations = 0};
+        }
+        while (iteration < max_iterations && !(residual_.norm() <= target)) {
             ++iteration;
             H.multiply_into(direction_, product_, executor);
             const Scalar curvature = direction_.dot(product_);

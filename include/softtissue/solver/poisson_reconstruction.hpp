@@ -10,7 +10,8 @@
 ///             The right-hand side is that of the correction x_new - x: a start near the result costs nothing and, in
 ///             float, keeps digits; the free columns of x must be finite, no more.
 /// Refuses     a mesh that CellMesh::validate() refuses; prescribed vertices that leave the operator singular, such as a free
-///             prism, whose gradient does not see its six hourglass modes (InvalidInput); arrays of another size.
+///             prism, whose gradient does not see its six hourglass modes (InvalidInput); arrays of another size; targets and
+///             positions that do not give finite ones (solve_into() names the first that is not finite and leaves x alone)
 /// Source      Nolte et al. 2026, eq. (9) and (10); Botsch et al. 2006
 /// Cost        per frame: one pass over the gradient operator, two over the factor; both on as many threads as the executor has,
 ///             the factor on two. No allocation. Same bits for every executor.
@@ -32,6 +33,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -86,6 +88,14 @@ public:
     /// Replaces the free columns of x; the prescribed ones are given.
     template <Executor E = SequentialExecutor>
     void solve_into(const Matrix3X<Scalar>& targets, Matrix3X<Scalar>& x, const E& executor = {}) {
+        if (!solve_finite_into(targets, x, executor)) {
+            refuse(targets, x);
+        }
+    }
+
+    /// The same where the result is finite; else false, and x stays.
+    template <Executor E = SequentialExecutor>
+    [[nodiscard]] bool solve_finite_into(const Matrix3X<Scalar>& targets, Matrix3X<Scalar>& x, const E& executor = {}) {
         require_positions(x);
         require(targets.cols() == 3 * num_cells(), "Poisson reconstruction: ", targets.cols(),
                 " columns of target gradients, expected three for each of ", num_cells(), " cells");
@@ -98,11 +108,16 @@ public:
                              [&](Index v, const auto& force) { correction_.col(factor_.place(v)) = force; });
         });
         factor_.solve_in_place(correction_, executor);
+        if (!std::isfinite(correction_.sum()) && !correction_.allFinite()) {
+            correction_.setZero();  // what belongs to no unknown must be finite at the next call
+            return false;
+        }
         executor.for_each_range(factor_.size(), [&](Index begin, Index end) {
             for (Index v = begin; v < end; ++v) {
                 x.col(free[size_t(v)]) += correction_.col(factor_.place(v)).template head<3>();
             }
         });
+        return true;
     }
 
 private:
@@ -125,6 +140,17 @@ private:
         require(prescribed.num_vertices() == mesh.num_vertices(), "Poisson reconstruction: prescribed vertices of ",
                 prescribed.num_vertices(), " vertices, expected ", mesh.num_vertices());
         return mesh;
+    }
+
+    [[noreturn]] static void refuse(const Matrix3X<Scalar>& targets, const Matrix3X<Scalar>& x) {
+        for (Index c = 0; c < targets.cols() / 3; ++c) {
+            require(targets.template middleCols<3>(3 * c).allFinite(),
+                    "Poisson reconstruction: target gradient of cell ", c, " is not finite");
+        }
+        for (Index v = 0; v < x.cols(); ++v) {
+            require(x.col(v).allFinite(), "Poisson reconstruction: position of vertex ", v, " is not finite");
+        }
+        throw_invalid_input("Poisson reconstruction: positions or targets too large for the range of the numbers");
     }
 
     void require_positions(const Matrix3X<Scalar>& x) const {

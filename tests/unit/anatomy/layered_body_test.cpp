@@ -110,6 +110,14 @@ TEST_CASE("options out of range are refused") {
         options.weight_rounds = -1;
         CHECK(message() == "layered body: rounds of smoothing 10 and -1, expected >= 0");
     }
+    SUBCASE("not finite") {
+        options.cut_fat = std::numeric_limits<double>::infinity();
+        CHECK(message() == "layered body: cut_fat = inf, expected > 0");
+    }
+    SUBCASE("share") {
+        options.accepted_share = std::numeric_limits<double>::quiet_NaN();
+        CHECK(message() == "layered body: accepted_share = nan, expected 0 to 1");
+    }
     SUBCASE("size of a map") {
         options.fat_thickness.setConstant(3, 0.01);
         CHECK(message() ==

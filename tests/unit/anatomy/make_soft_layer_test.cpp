@@ -208,6 +208,21 @@ TEST_CASE("options out of range and skins that are none are refused") {
         options.bone_radius = -0.01;
         CHECK(message() == "soft layer: bone_radius = -0.01, expected >= 0");
     }
+    SUBCASE("not finite") {
+        const auto infinity = std::numeric_limits<double>::infinity();
+        SUBCASE("minimum") {
+            options.minimum_thickness = options.full_thickness = infinity;
+            CHECK(message() == "soft layer: minimum_thickness = inf, expected > 0");
+        }
+        SUBCASE("decay") {
+            options.decay_distance = infinity;
+            CHECK(message() == "soft layer: decay_distance = inf, expected > 0");
+        }
+        SUBCASE("cosine") {
+            options.wanted_cosine = std::numeric_limits<double>::quiet_NaN();
+            CHECK(message() == "soft layer: wanted_cosine = nan, expected a value between 0 and 1");
+        }
+    }
     SUBCASE("decay") {
         options.decay_distance = 0;
         CHECK(message() == "soft layer: decay_distance = 0, expected > 0");

@@ -5,9 +5,14 @@
 #include <softtissue/material/field.hpp>
 #include <softtissue/material/stable_neo_hookean.hpp>
 
+#include <reliability/random_pose.hpp>
 #include <support/rigged_bar.hpp>
 
 #include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
 using namespace softtissue;
 using namespace softtissue_test;
@@ -136,4 +141,40 @@ TEST_CASE("what does not fit is refused") {
     Avatar<UnposedFrame> avatar(model, bar.mesh, bar.prescribed, field, executor);
     CHECK_THROWS_WITH_AS(static_cast<void>(avatar.step(Pose<double>::rest(24))), "pose has 24 joints, expected 3",
                          InvalidInput);
+}
+
+TEST_CASE_TEMPLATE("thrown from pose to pose, far beyond what joints do, an avatar stays finite and says how it went", Frame,
+                   UnposedFrame, WorldFrame, RestRetargetedFrame) {
+    const Bar bar(2);
+    Avatar<Frame> avatar(VolumetricSmpl<double>(bar.body), bar.mesh, bar.prescribed, field, executor);
+    for (std::uint64_t k = 0; k < 15; ++k) {
+        RandomGenerator random(k);
+        avatar.start(rest);
+        for (const Pose<double>& pose : {reliability::random_pose<double>(3, random), rest}) {
+            const SolveReport<double> report = avatar.step(pose);
+            CAPTURE(k);
+            CAPTURE(to_string(report.status));
+            CHECK(avatar.positions().allFinite());
+            CHECK(avatar.velocities().allFinite());
+            CHECK(report.iterations <= avatar.options().newton.max_iterations);
+        }
+    }
+}
+
+TEST_CASE("a pose that is not finite is refused, and the avatar goes on as if it had not been asked") {
+    const Bar bar(2);
+    const VolumetricSmpl<double> model(bar.body);
+    Avatar<UnposedFrame> avatar(model, bar.mesh, bar.prescribed, field, executor);
+    Avatar<UnposedFrame> other(model, bar.mesh, bar.prescribed, field, executor);
+    CHECK(avatar.step(Bar::swing(1)).succeeded());
+    CHECK(other.step(Bar::swing(1)).succeeded());
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+        Pose<double> pose = Bar::swing(2);
+        pose.rotation_vectors(0, 2) = bad;
+        CHECK_THROWS_WITH_AS(static_cast<void>(avatar.step(pose)), "pose: joint 2: rotation is not finite", InvalidInput);
+    }
+    CHECK(avatar.step(Bar::swing(2)).succeeded());
+    CHECK(other.step(Bar::swing(2)).succeeded());
+    CHECK(avatar.positions() == other.positions());
+    CHECK(avatar.velocities() == other.velocities());
 }

@@ -71,6 +71,9 @@ TEST_CASE("a displacement keeps its digits far from the origin") {
 TEST_CASE("a time step or masses that make no sense are refused") {
     CHECK_THROWS_WITH_AS(Inertia<double>(masses, 0.0), "time step = 0 s, expected > 0", InvalidInput);
     CHECK_THROWS_AS(Inertia<double>(masses, std::numeric_limits<double>::quiet_NaN()), InvalidInput);
+    CHECK_THROWS_WITH_AS(Inertia<double>(masses, 1e-200),
+                         "time step = 1e-200 s, expected a square within the range of the numbers", InvalidInput);
+    CHECK_THROWS_AS(Inertia<double>(masses, 1e200), InvalidInput);
     CHECK_THROWS_WITH_AS(Inertia<double>(Eigen::Vector2d(1, -2), dt), "mass of vertex 1 = -2 kg, expected >= 0",
                          InvalidInput);
     CHECK_THROWS_AS(Inertia<double>(Eigen::Vector2d(std::numeric_limits<double>::infinity(), 1), dt), InvalidInput);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/linalg/symmetric_eigen.hpp>
 
+#include <softtissue/core/pack.hpp>
 #include <softtissue/testing/random_states.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
 
 using namespace softtissue;
 
@@ -27,7 +31,8 @@ Square<Scalar, N> with_spectrum(const std::array<double, std::size_t(N)>& values
             Q.col(q) = s * u + c * v;
         }
     }
-    const Square<double, N> H = Q * Eigen::Map<const Eigen::Matrix<double, N, 1>>(values.data()).asDiagonal() * Q.transpose();
+    const Square<double, N> H =
+        Q * Eigen::Map<const Eigen::Matrix<double, N, 1>>(values.data()).asDiagonal() * Q.transpose();
     return H.template cast<Scalar>();
 }
 
@@ -119,4 +124,38 @@ TEST_CASE("small eigenvalues of a graded matrix keep their relative accuracy") {
     // the smallest is det(C) / det of the leading 2x2 block of C, times 1e-24, up to a relative 1e-12
     const double expected = C.determinant() / (1 - 0.01) * 1e-24;
     CHECK(std::abs(values(0) / expected - 1) < 1e-10);
+}
+
+TEST_CASE_TEMPLATE("what is not finite gives NaN throughout, and leaves its neighbours in a pack alone", Scalar, float,
+                   double) {
+    using Limits = std::numeric_limits<Scalar>;
+    using Lanes = Pack<Scalar, 4>;
+    RandomGenerator random(12);
+    const auto check_size = [&]<int N>(std::integral_constant<int, N>) {
+        const Square<Scalar, N> good = random_symmetric<Scalar, N>(random);
+        for (const Scalar bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+            for (int j = 0; j < N; ++j) {
+                for (int i = j; i < N; ++i) {
+                    Square<Scalar, N> H = good;
+                    H(i, j) = bad;
+                    const SymmetricEigen<Scalar, N> eigen = symmetric_eigen<Scalar, N>(H);
+                    CHECK(eigen.values.array().isNaN().all());
+                    CHECK(eigen.vectors.array().isNaN().all());
+                    Square<Lanes, N> packed;
+                    for (int k = 0; k < N * N; ++k) {
+                        packed.data()[k] =
+                            Lanes::from_lanes([&](int lane) { return (lane == 2 ? H : good).data()[k]; });
+                    }
+                    const SymmetricEigen<Lanes, N> lanes = symmetric_eigen<Lanes, N>(packed);
+                    const SymmetricEigen<Lanes, N> alone = symmetric_eigen<Lanes, N>(good.template cast<Lanes>());
+                    for (int k = 0; k < N; ++k) {
+                        CHECK(std::isnan(lanes.values(k)[2]));
+                        CHECK(lanes.values(k)[1] == alone.values(k)[1]);
+                    }
+                }
+            }
+        }
+    };
+    check_size(std::integral_constant<int, 3>());
+    check_size(std::integral_constant<int, 9>());
 }

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <vector>
 
 using namespace softtissue;
@@ -36,4 +37,8 @@ TEST_CASE("bad moduli and a wrong number of rotations are refused") {
     CorotatedLinearField<double> field({{1, 1}});
     CHECK_THROWS_WITH_AS(field.set_rotations(std::vector<Matrix3<double>>(3)),
                          "co-rotated linear: 3 rotations, expected 1", InvalidInput);
+    std::vector<Matrix3<double>> rotations(1, Matrix3<double>::Identity());
+    rotations[0](2, 0) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(field.set_rotations(rotations), "co-rotated linear: rotation of cell 0 is not finite",
+                         InvalidInput);
 }

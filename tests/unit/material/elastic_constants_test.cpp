@@ -48,6 +48,7 @@ TEST_CASE("what is refused, and how it is worded") {
     }
     CHECK_NOTHROW(lame_parameters<double>({.young_modulus = 1.0, .poisson_ratio = std::nextafter(0.5, 0.0)}));
     CHECK_NOTHROW(lame_parameters<double>({.young_modulus = 1.0, .poisson_ratio = std::nextafter(-1.0, 0.0)}));
+    CHECK_THROWS_AS(lame_parameters<double>({.young_modulus = 1e308, .poisson_ratio = 0.49}), InvalidInput);
     CHECK(refusal([] { lame_parameters<double>({.young_modulus = -3, .poisson_ratio = 0.3}); }) ==
           "young_modulus = -3, expected positive and finite");
     CHECK(refusal([] { lame_parameters<double>({.young_modulus = 3, .poisson_ratio = 0.5}); }) ==

@@ -176,6 +176,10 @@ TEST_CASE("prescribed vertices and values that do not fit are named") {
     CHECK_THROWS_WITH_AS(interpolation.interpolate(MatrixX<double>::Zero(3, 1)),
                          "interpolation: values have 3 rows, expected a multiple of the 2 prescribed vertices",
                          InvalidInput);
+    MatrixX<double> values = MatrixX<double>::Zero(6, 2);
+    values(4, 1) = std::nan("");
+    CHECK_THROWS_WITH_AS(interpolation.interpolate(values),
+                         "interpolation: a value of prescribed vertex 3 is not finite", InvalidInput);
 }
 
 TEST_CASE("an energy that is not positive semi-definite is refused") {

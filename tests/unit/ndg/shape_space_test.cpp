@@ -48,6 +48,11 @@ TEST_CASE("bodies of another size are refused") {
     CHECK(space.num_coefficients() == 2);
     CHECK_THROWS_WITH_AS(space.encode(Matrix3X<double>::Zero(3, 39)), "shape space: a body of 39 vertices, expected 40",
                          InvalidInput);
+    Matrix3X<double> spoilt = bodies[0];
+    spoilt(1, 7) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(space.encode(spoilt), "shape space: rest position of vertex 7 is not finite", InvalidInput);
+    CHECK_THROWS_WITH_AS(space.decode(Eigen::Vector2d(0, std::numeric_limits<double>::infinity())),
+                         "shape space: coefficient 1 = inf, expected a finite value", InvalidInput);
     bodies[3].resize(3, 41);
     CHECK_THROWS_WITH_AS(ShapeSpace<double>::from_bodies(bodies, {}),
                          "shape space: body 3 has 41 vertices, expected 40", InvalidInput);

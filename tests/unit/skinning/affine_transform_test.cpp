@@ -34,3 +34,15 @@ TEST_CASE_TEMPLATE("the inverse takes points back, also through a mirror", S, fl
         CHECK((T.inverse()(T(x)) - x).norm() <= S(1000) * std::numeric_limits<S>::epsilon());
     }
 }
+
+TEST_CASE_TEMPLATE("every entry counts for being finite", S, float, double) {
+    for (int k = 0; k < 12; ++k) {
+        for (const S bad : {std::numeric_limits<S>::quiet_NaN(), -std::numeric_limits<S>::infinity()}) {
+            AffineTransform<S> T;
+            CHECK(T.is_finite());
+            (k < 9 ? T.linear.data()[k] : T.translation(k - 9)) = bad;
+            CHECK_FALSE(T.is_finite());
+        }
+    }
+    CHECK(AffineTransform<S>{Matrix3<S>::Constant(std::numeric_limits<S>::max()), Vector3<S>::Zero()}.is_finite());
+}

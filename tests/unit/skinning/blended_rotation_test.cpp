@@ -101,12 +101,15 @@ TEST_CASE("same bits for any number of threads") {
 
 TEST_CASE("another number of bones or rows is refused") {
     const BlendedRotations<double> blended(random_weights<double>(2, 3));
-    CHECK_THROWS_WITH_AS(blended.rotations(random_joints<double>(4, 1, 1)),
-                         "blended rotations: 4 bones, expected 3", InvalidInput);
+    CHECK_THROWS_WITH_AS(blended.rotations(random_joints<double>(4, 1, 1)), "blended rotations: 4 bones, expected 3",
+                         InvalidInput);
     std::vector<Matrix3<double>> rotations(1);
-    CHECK_THROWS_WITH_AS(
-        blended.rotations_into(bone_quaternions<double>(random_joints<double>(3, 1, 1)), rotations),
-        "blended rotations: 1 rotations, expected 2", InvalidInput);
+    CHECK_THROWS_WITH_AS(blended.rotations_into(bone_quaternions<double>(random_joints<double>(3, 1, 1)), rotations),
+                         "blended rotations: 1 rotations, expected 2", InvalidInput);
+    std::vector<AffineTransform<double>> joints = random_joints<double>(3, 1, 1);
+    joints[2].linear(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(blended.rotations(joints), "blended rotations: quaternion of joint 2 is not finite",
+                         InvalidInput);
 }
 
 TEST_CASE("agrees with independent software") {

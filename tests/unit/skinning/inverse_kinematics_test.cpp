@@ -201,3 +201,45 @@ TEST_CASE("what does not fit is refused") {
     CHECK(!refused({{}, {{1, Matrix3<double>::Constant(nan), 1.0}}}).empty());
     CHECK(!refused({}, 5).empty());
 }
+
+TEST_CASE_TEMPLATE("poses that are not finite are refused, numbers out of range are told, and nothing runs without end",
+                   S, float, double) {
+    using Limits = std::numeric_limits<S>;
+    const Body<S> body;
+    const Pose<S> rest = Pose<S>::rest(7);
+    const PoseGoals<S> goals{{{3, Vector3<S>(S(1), S(2), S(3)), S(1)}}, {}};
+    Pose<S> pose = rest;
+    pose.rotation_vectors(1, 2) = Limits::quiet_NaN();
+    const InverseKinematics<S> solver(body.tree, body.joints);
+    CHECK(refusal([&] { static_cast<void>(solver.solve_into(goals, pose)); }) ==
+          "joint_transforms: joint 2: rotation is not finite");
+
+    pose = rest;
+    PoseGoals<S> far = goals;
+    far.positions[0].position(0) = Limits::max();
+    CHECK(solver.solve_into(far, pose).status == InverseKinematicsStatus::not_finite);
+    CHECK(pose.rotation_vectors.isZero(S(0)));
+    far = goals;
+    far.positions[0].weight = std::sqrt(Limits::max());
+    CHECK(solver.solve_into(far, pose).status == InverseKinematicsStatus::not_finite);
+    CHECK(pose.rotation_vectors.isZero(S(0)));
+
+    // a Jacobian whose squares are just within the range of the numbers
+    for (const S size : {std::sqrt(Limits::max()) / S(64), std::sqrt(Limits::max()) / S(8)}) {
+        InverseKinematicsOptions<S> wild;
+        wild.mobility = VectorX<S>::Constant(7, size);
+        pose = rest;
+        CHECK(InverseKinematics<S>(body.tree, body.joints, wild).solve_into(goals, pose).status !=
+              InverseKinematicsStatus::converged);
+        CHECK(pose.rotation_vectors.allFinite());
+    }
+    pose = rest;
+
+    // joints that hardly turn: the squares of the Jacobian are zero
+    InverseKinematicsOptions<S> options;
+    options.mobility = VectorX<S>::Constant(7, Limits::min());
+    options.root_translates = false;
+    const InverseKinematics<S> stiff(body.tree, body.joints, options);
+    CHECK(stiff.solve_into(goals, pose).status == InverseKinematicsStatus::stalled);
+    CHECK(pose.rotation_vectors.allFinite());
+}

@@ -39,8 +39,7 @@ Eigen::Matrix<S, 4, 4> textbook_transform(const RandomSkeleton<S>& s, Index join
     Frame world = Frame::Identity();
     for (Index j = joint; j != KinematicTree::no_parent; j = s.tree.parent(j)) {
         Frame local = Frame::Identity();
-        local.template topLeftCorner<3, 3>() =
-            rotation_matrix_from_rotation_vector<S>(s.pose.rotation_vectors.col(j));
+        local.template topLeftCorner<3, 3>() = rotation_matrix_from_rotation_vector<S>(s.pose.rotation_vectors.col(j));
         const bool is_root = s.tree.parent(j) == KinematicTree::no_parent;
         local.template topRightCorner<3, 1>() =
             s.joints.col(j) - (is_root ? Vector3<S>::Zero().eval() : s.joints.col(s.tree.parent(j)).eval());
@@ -120,4 +119,13 @@ TEST_CASE("joints or poses of another skeleton are refused") {
                          "joint_transforms: 1 rest joints, expected 2", InvalidInput);
     CHECK_THROWS_WITH_AS(posed_joints<double>(std::vector<AffineTransform<double>>(3), joints),
                          "posed_joints: 3 transforms, expected 2", InvalidInput);
+}
+
+TEST_CASE("a pose that is not finite is refused, with the joint") {
+    const KinematicTree tree({-1, 0});
+    const Matrix3X<double> joints = Matrix3X<double>::Zero(3, 2);
+    Pose<double> pose = Pose<double>::rest(2);
+    pose.rotation_vectors(0, 1) = 1e200;  // finite, but it has no sine
+    CHECK_THROWS_WITH_AS(joint_transforms(tree, joints, pose), "joint_transforms: joint 1: rotation is not finite",
+                         InvalidInput);
 }

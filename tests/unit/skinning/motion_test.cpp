@@ -37,6 +37,8 @@ TEST_CASE_TEMPLATE("what cannot be played is refused, with frame and joint", S, 
                          "m: frame 0 has 2 joints, expected 24 (a motion for another skeleton)", InvalidInput);
     motion.poses[2].rotation_vectors(1, 1) = std::numeric_limits<S>::quiet_NaN();
     CHECK_THROWS_WITH_AS(motion.validate("m", 2), "m: frame 2, joint 1: rotation is not finite", InvalidInput);
+    motion.poses[2].rotation_vectors(1, 1) = std::numeric_limits<S>::max();  // no angle: its square is infinite
+    CHECK_THROWS_WITH_AS(motion.validate("m", 2), "m: frame 2, joint 1: rotation is not finite", InvalidInput);
     motion = three_frames<S>();
     motion.poses[1].translation(0) = std::numeric_limits<S>::infinity();
     CHECK_THROWS_WITH_AS(motion.validate("m", 2), "m: frame 1: translation is not finite", InvalidInput);

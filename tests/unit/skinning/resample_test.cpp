@@ -115,7 +115,8 @@ TEST_CASE("twice continuously differentiable: changes of acceleration vanish wit
         std::vector<Vector3<double>> values;
         for (const Pose<double>& pose : resample(motion, rate).poses) {
             values.push_back(rotation_matrix_from_rotation_vector<double>(pose.rotation_vectors.col(0)) *
-                                 Vector3<double>(1, 1, 1) + pose.translation);
+                                 Vector3<double>(1, 1, 1) +
+                             pose.translation);
         }
         for (int d = 0; d < order; ++d) {
             for (size_t k = 0; k + 1 < values.size(); ++k) {
@@ -176,6 +177,19 @@ TEST_CASE("what cannot be resampled is refused") {
     CHECK_THROWS_WITH_AS(resample(motion, std::numeric_limits<double>::quiet_NaN()),
                          "resample: new frame rate is nan, expected > 0", InvalidInput);
     CHECK_THROWS_WITH_AS(resample(Motion<double>{{}, 30}, 60), "resample: the motion has no frames", InvalidInput);
+    // more frames than can be numbered, and a rate so low that the time between frames is infinite
+    CHECK_THROWS_WITH_AS(
+        resample(motion, 1e100),
+        "resample: frame rate from 30 to 1e+100 gives 6.666666667e+98 frames, expected at most 2147483647",
+        InvalidInput);
+    const Motion<double> first = resample(motion, std::numeric_limits<double>::denorm_min());
+    REQUIRE(first.num_frames() == 1);
+    CHECK((first.poses[0].rotation_vectors - motion.poses[0].rotation_vectors).norm() < 1e-15);
+    Motion<double> far = motion;
+    far.poses[1].translation(0) = std::numeric_limits<double>::max();
+    CHECK_THROWS_WITH_AS(resample(far, 60),
+                         "resample: translations at new frame 0 are too large for the range of the numbers",
+                         InvalidInput);
     motion.poses[1].rotation_vectors(0, 0) = std::numeric_limits<double>::infinity();
     CHECK_THROWS_WITH_AS(resample(motion, 60), "resample: frame 1, joint 0: rotation is not finite", InvalidInput);
 }

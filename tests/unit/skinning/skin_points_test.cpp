@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <vector>
 
 using namespace softtissue;
@@ -59,4 +60,14 @@ TEST_CASE("weights of other points are refused") {
     CHECK(softtissue_test::refusal([&] {
               skin_points_into(LinearBlend<double>(), example.joints, example.weights, example.rest, prepared, x);
           }) == "skinning: weights of 4 points, expected 3");
+}
+
+TEST_CASE("a joint transform that is not finite is refused") {
+    Example<double> example;
+    example.joints[1].translation(2) = std::numeric_limits<double>::infinity();
+    MatrixX<double> prepared;
+    Matrix3X<double> x;
+    CHECK(softtissue_test::refusal([&] {
+              skin_points_into(LinearBlend<double>(), example.joints, example.weights, example.rest, prepared, x);
+          }) == "skinning: transform of joint 1 is not finite");
 }

@@ -105,6 +105,10 @@ TEST_CASE("bad matches and bad interpolations are refused, with the vertex") {
     CHECK_THROWS_WITH_AS(Carrier(18, 3, no_vertex, zero),
                          "surface carrier: match of volume vertex 0 with surface vertex 18, expected below 3 and 18",
                          InvalidInput);
+    CHECK_THROWS_WITH_AS(
+        Carrier(18, 800000000, twice, zero),
+        "surface carrier: coordinates of the volume = 2400000000, expected 0 to 2147483647 (indices are 32-bit)",
+        InvalidInput);
     CHECK_THROWS_WITH_AS(Carrier(18, 3, twice, zero), "surface carrier: volume vertex 2 is matched twice",
                          InvalidInput);
     CHECK_THROWS_WITH_AS(Carrier(18, 3, one_match, zero).weights(body.weights),

@@ -11,6 +11,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -111,7 +112,8 @@ TEST_CASE_TEMPLATE("shape: linear, joints follow the surface, missing coefficien
     CHECK(model.rest_vertices() == body.template_vertices);
     CHECK(model.shape() == VectorX<S>::Zero(2));
     const Matrix3X<S> rest = model.rest_shape(two_betas<S>());
-    CHECK(largest_distance(model.joints(two_betas<S>()), textbook_joints(body, rest)) <= 10 * std::numeric_limits<S>::epsilon());
+    CHECK(largest_distance(model.joints(two_betas<S>()), textbook_joints(body, rest)) <=
+          10 * std::numeric_limits<S>::epsilon());
     const VectorX<S> one = VectorX<S>::Constant(1, S(2)), padded = Eigen::Matrix<S, 2, 1>(2, 0);
     CHECK(model.rest_shape(one) == model.rest_shape(padded));
     model.set_shape(two_betas<S>());
@@ -219,9 +221,21 @@ TEST_CASE("what does not fit is refused") {
                          InvalidInput);
     CHECK_THROWS_WITH_AS(model.pose(Pose<double>::rest(5)), "pose has 5 joints, expected 4", InvalidInput);
     CHECK_THROWS_WITH_AS(model.pose_offsets(Pose<double>::rest(5)), "pose has 5 joints, expected 4", InvalidInput);
+    const double infinity = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(model.rest_shape(Eigen::Vector2d(1, infinity)),
+                         "shape: coefficient 1 = inf, expected a finite value", InvalidInput);
+    CHECK_THROWS_WITH_AS(model.rest_shape(Eigen::Vector2d(1, std::numeric_limits<double>::max()) * 1e3),
+                         "shape: coefficient 1 = inf, expected a finite value", InvalidInput);
+    Pose<double> pose = Pose<double>::rest(4);
+    pose.rotation_vectors(1, 3) = std::nan("");
+    CHECK_THROWS_WITH_AS(model.pose(pose), "pose: joint 3: rotation is not finite", InvalidInput);
+    CHECK_THROWS_WITH_AS(model.pose_offsets(pose), "pose: joint 3: rotation is not finite", InvalidInput);
+    pose = Pose<double>::rest(4);
+    pose.translation(2) = infinity;
+    CHECK_THROWS_WITH_AS(model.pose(pose), "pose: translation is not finite", InvalidInput);
     body.shape_directions.resize(6, 2);
-    CHECK_THROWS_WITH_AS(VolumetricSmpl{body},
-                         "VolumetricSmpl: shapedirs (3n x shapes) is 6 x 2, expected 144 x 2", InvalidInput);
+    CHECK_THROWS_WITH_AS(VolumetricSmpl{body}, "VolumetricSmpl: shapedirs (3n x shapes) is 6 x 2, expected 144 x 2",
+                         InvalidInput);
 }
 
 TEST_CASE("agrees with smplx to 1e-8 m") {
@@ -248,9 +262,9 @@ TEST_CASE("agrees with smplx to 1e-8 m") {
             const Eigen::Map<const Matrix3X<double>> expected(vertices.data() + 3 * n * k, 3, n);
             const Eigen::Map<const Matrix3X<double>> expected_joints(joints.data() + 3 * 24 * k, 3, 24);
             worst = std::max(worst, largest_distance<double>(posed.positions, expected));
-            worst_joint = std::max(worst_joint, largest_distance<double>(
-                                                    posed_joints(posed.joint_transforms, model.rest_joints()),
-                                                    expected_joints));
+            worst_joint = std::max(
+                worst_joint,
+                largest_distance<double>(posed_joints(posed.joint_transforms, model.rest_joints()), expected_joints));
         }
         MESSAGE(name << " body, " << poses.rows() << " cases: vertices within " << worst << " m, joints within "
                      << worst_joint << " m");

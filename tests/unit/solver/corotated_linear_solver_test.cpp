@@ -11,6 +11,9 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <vector>
+
 using namespace softtissue;
 using namespace softtissue_test;
 
@@ -62,4 +65,21 @@ TEST_CASE("a rigid motion of all bones is followed exactly") {
     }
     REQUIRE(solver.solve_into(rotations, x));
     CHECK((x - posed.positions).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("a start that is not finite gives no result, and rotations that are not are refused") {
+    const RiggedBar<Prism6> bar(2);
+    const SequentialExecutor executor;
+    const std::vector<LameParameters<double>> moduli(size_t(bar.mesh.num_cells()), {1e4, 2e4});
+    CorotatedLinearSolver<Prism6, double, SequentialExecutor> solver(
+        bar.mesh, PrescribedVertices(bar.mesh.num_vertices(), bar.prescribed), moduli, executor);
+    std::vector<Matrix3<double>> rotations(size_t(bar.mesh.num_cells()), Matrix3<double>::Identity());
+    Matrix3X<double> x = bar.mesh.rest_positions;
+    x(0, bar.prescribed[1]) = std::numeric_limits<double>::quiet_NaN();
+    const Matrix3X<double> start = x;
+    CHECK_FALSE(solver.solve_into(rotations, x));
+    CHECK((x.array() == start.array() || start.array().isNaN()).all());
+    rotations[2](1, 1) = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(static_cast<void>(solver.solve_into(rotations, x)),
+                         "co-rotated linear: rotation of cell 2 is not finite", InvalidInput);
 }

@@ -28,8 +28,8 @@ TEST_CASE_TEMPLATE("free fall is that of implicit Euler exactly", Scalar, float,
     const Vector3<Scalar> gravity(0, Scalar(-9.81), 0);
     DirectSolver<Scalar> linear_solver;
     SeparableEnergy<Scalar, Spring<Scalar>> nothing{{.stiffness = 0}};
-    ImplicitEuler euler(VectorX<Scalar>(Vector3<Scalar>(1, 5, 0).template head<2>()), dt, PrescribedVertices(2, {}), start,
-                        linear_solver, executor, nothing);
+    ImplicitEuler euler(VectorX<Scalar>(Vector3<Scalar>(1, 5, 0).template head<2>()), dt, PrescribedVertices(2, {}),
+                        start, linear_solver, executor, nothing);
     CHECK(euler.time_step() == dt);
     euler.set_acceleration(gravity);
     euler.placement().origins = start;
@@ -53,8 +53,8 @@ TEST_CASE("a free body keeps its momentum, and loses energy only") {
     const VectorX<double> masses = lumped_masses(block.mesh, 1000.0);
     DirectSolver<double> linear_solver;
     const Index n = block.mesh.num_vertices();
-    ImplicitEuler euler(masses, 1.0 / 120.0, PrescribedVertices(n, {}), block.mesh.rest_positions, linear_solver, executor,
-                        elastic);
+    ImplicitEuler euler(masses, 1.0 / 120.0, PrescribedVertices(n, {}), block.mesh.rest_positions, linear_solver,
+                        executor, elastic);
     euler.placement().origins = block.mesh.rest_positions;
     RandomGenerator random(3);
     DynamicState<double> state = euler.state();
@@ -107,8 +107,8 @@ TEST_CASE("prescribed vertices go where they are told and pull the others") {
     }
     DirectSolver<double> linear_solver;
     const Index n = block.mesh.num_vertices();
-    ImplicitEuler euler(masses, 0.01, PrescribedVertices(n, block.bottom), block.mesh.rest_positions, linear_solver, executor,
-                        elastic);
+    ImplicitEuler euler(masses, 0.01, PrescribedVertices(n, block.bottom), block.mesh.rest_positions, linear_solver,
+                        executor, elastic);
     euler.placement().origins = block.mesh.rest_positions;
     Matrix3X<double> d = Matrix3X<double>::Zero(3, n);
     const Vector3<double> shift(0.03, 0.01, 0);
@@ -131,8 +131,8 @@ TEST_CASE("of several starts the one with the lowest energy is taken; the placem
     Springs springs{{.stiffness = 1}};
     DirectSolver<double> linear_solver;
     const Matrix3X<double> origin = Matrix3X<double>::Zero(3, 1);
-    ImplicitEuler euler(VectorX<double>::Constant(1, 1.0), 0.1, PrescribedVertices(1, {}), origin, linear_solver, executor,
-                        springs);
+    ImplicitEuler euler(VectorX<double>::Constant(1, 1.0), 0.1, PrescribedVertices(1, {}), origin, linear_solver,
+                        executor, springs);
     euler.placement().origins = Matrix3X<double>::Constant(3, 1, 1.0);
     euler.placement().maps = 2 * Matrix3<double>::Identity();
     Matrix3X<double> d = Matrix3X<double>::Constant(3, 1, 100.0);
@@ -151,8 +151,8 @@ TEST_CASE("an observer may cancel a step") {
     Springs springs{{.stiffness = 1}};
     DirectSolver<double> linear_solver;
     const Matrix3X<double> start = Matrix3X<double>::Ones(3, 1);
-    ImplicitEuler euler(VectorX<double>::Constant(1, 1.0), 0.1, PrescribedVertices(1, {}), start, linear_solver, executor,
-                        springs);
+    ImplicitEuler euler(VectorX<double>::Constant(1, 1.0), 0.1, PrescribedVertices(1, {}), start, linear_solver,
+                        executor, springs);
     euler.placement().origins = start;
     Matrix3X<double> d = Matrix3X<double>::Constant(3, 1, 0.5);
     const auto cancel = [](const NewtonProgress<double>&) { return false; };
@@ -170,7 +170,27 @@ TEST_CASE("a time step or masses that make no sense are refused") {
     CHECK(make(Eigen::Vector2d(1, 2), 0.1) == 0.1);
     CHECK_THROWS_WITH_AS(make(Eigen::Vector2d(1, 2), -0.1), "time step = -0.1 s, expected > 0", InvalidInput);
     CHECK_THROWS_WITH_AS(make(Eigen::Vector2d(1, 0), 0.1), "mass of free vertex 1 = 0 kg, expected > 0", InvalidInput);
-    CHECK_THROWS_WITH_AS(make(Eigen::Vector3d(1, 2, 3), 0.1), "implicit Euler: 3 masses, expected one for each of 2 vertices",
-                         InvalidInput);
+    CHECK_THROWS_WITH_AS(make(Eigen::Vector3d(1, 2, 3), 0.1),
+                         "implicit Euler: 3 masses, expected one for each of 2 vertices", InvalidInput);
     CHECK_THROWS_AS(make(Eigen::Vector2d(std::numeric_limits<double>::quiet_NaN(), 1), 0.1), InvalidInput);
+}
+
+TEST_CASE("a state or an acceleration that is not finite is refused") {
+    Springs springs{};
+    DirectSolver<double> linear_solver;
+    const Matrix3X<double> start = Matrix3X<double>::Zero(3, 2);
+    ImplicitEuler euler(Eigen::Vector2d(1, 2).eval(), 0.1, PrescribedVertices(2, {}), start, linear_solver, executor,
+                        springs);
+    DynamicState<double> state = euler.state();
+    state.positions(1, 1) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(euler.set_state(state), "implicit Euler: position of vertex 1 is not finite", InvalidInput);
+    state = euler.state();
+    state.velocities(2, 0) = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(euler.set_state(state), "implicit Euler: velocity of vertex 0 is not finite", InvalidInput);
+    state.velocities.resize(3, 3);
+    CHECK_THROWS_WITH_AS(euler.set_state(state),
+                         "implicit Euler: 3 columns of velocity, expected one for each of 2 vertices", InvalidInput);
+    CHECK(euler.state().velocities.isZero(0.0));
+    CHECK_THROWS_WITH_AS(euler.set_acceleration(Vector3<double>(0, std::nan(""), 0)),
+                         "implicit Euler: the acceleration is not finite", InvalidInput);
 }

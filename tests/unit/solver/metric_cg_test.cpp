@@ -114,3 +114,17 @@ TEST_CASE("negative curvature is reported") {
     CHECK_FALSE(
         solver.solve(indefinite, random_vector<double>(random), 1e-8, p, SequentialExecutor{}).is_positive_definite);
 }
+
+TEST_CASE("numbers that leave the range of the scalar do not pass for a solution") {
+    RandomGenerator random(5);
+    const BlockMatrix<float> K = chain<float>(0, 0.5F, random);
+    ScalarMetric<float> metric;
+    metric.factorize(K, "K");
+    MetricCg<ScalarMetric<float>> solver(metric);
+    VectorX<float> p, rhs = random_vector<float>(random);
+    CHECK(solver.solve(K, rhs, 1e-4F, p, SequentialExecutor{}).is_positive_definite);
+    rhs *= 1e25F;  // finite, but its norm is not
+    CHECK_FALSE(solver.solve(K, rhs, 1e-4F, p, SequentialExecutor{}).is_positive_definite);
+    rhs(0) = std::numeric_limits<float>::quiet_NaN();
+    CHECK_FALSE(solver.solve(K, rhs, 1e-4F, p, SequentialExecutor{}).is_positive_definite);
+}

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 using namespace softtissue;
 using namespace softtissue_test;
 
@@ -23,7 +25,8 @@ Matrix3X<S> random_shape(const Matrix3X<S>& X, double size, std::uint64_t seed) 
 }
 
 template <class S>
-Matrix3X<S> with_free_columns_of(const PrescribedVertices& prescribed, const Matrix3X<S>& boundary, const Matrix3X<S>& inside) {
+Matrix3X<S> with_free_columns_of(const PrescribedVertices& prescribed, const Matrix3X<S>& boundary,
+                                 const Matrix3X<S>& inside) {
     Matrix3X<S> x = boundary;
     for (const std::int32_t v : prescribed.free_vertices()) {
         x.col(v) = inside.col(v);
@@ -58,7 +61,8 @@ TEST_CASE_TEMPLATE("targets that no shape has are met in the least-squares sense
     const auto block = solid_block<E>({.n = 2, .plan_noise = 0.1});
     const Matrix3X<double>& X = block.mesh.rest_positions;
     PoissonReconstruction<E, double> poisson(block.mesh, PrescribedVertices(X.cols(), block.bottom));
-    const Matrix3X<double> targets = random_shape(Matrix3X<double>(Matrix3X<double>::Zero(3, 3 * poisson.num_cells())), 1, 9);
+    const Matrix3X<double> targets =
+        random_shape(Matrix3X<double>(Matrix3X<double>::Zero(3, 3 * poisson.num_cells())), 1, 9);
     const auto distance = [&](const Matrix3X<double>& x) {
         Matrix3X<double> F;
         poisson.gradients_into(x, F);
@@ -117,4 +121,35 @@ TEST_CASE("what leaves the operator singular is refused") {
     CHECK_THROWS_WITH_AS(poisson.solve_into(Matrix3X<double>::Zero(3, 3), x),
                          "Poisson reconstruction: 3 columns of target gradients, expected three for each of 2 cells",
                          InvalidInput);
+}
+
+TEST_CASE_TEMPLATE("targets and positions that give no finite result are refused by name, and nothing is changed", S,
+                   float, double) {
+    using Limits = std::numeric_limits<S>;
+    const auto block = solid_block<Prism6, S>({.n = 2});
+    const Matrix3X<S>& X = block.mesh.rest_positions;
+    PoissonReconstruction<Prism6, S> poisson(block.mesh, PrescribedVertices(X.cols(), block.bottom));
+    const Matrix3X<S> targets = Matrix3<S>::Identity().replicate(1, poisson.num_cells());
+    Matrix3X<S> good = X;
+    poisson.solve_into(targets, good);
+    for (const S bad : {Limits::quiet_NaN(), Limits::infinity()}) {
+        Matrix3X<S> spoilt = targets, x = X;
+        spoilt(1, 3 * 5 + 2) = bad;
+        CHECK_THROWS_WITH_AS(poisson.solve_into(spoilt, x),
+                             "Poisson reconstruction: target gradient of cell 5 is not finite", InvalidInput);
+        CHECK(x == X);
+        CHECK_FALSE(poisson.solve_finite_into(spoilt, x));
+        CHECK(x == X);
+        for (const std::int32_t v : {block.bottom[2], poisson.prescribed().free_vertices()[3]}) {
+            x = X;
+            x(0, v) = bad;
+            CHECK_THROWS_AS(poisson.solve_into(targets, x), InvalidInput);
+        }
+    }
+    Matrix3X<S> x = X;
+    const Matrix3X<S> huge = Matrix3X<S>::Constant(3, targets.cols(), Limits::max());
+    CHECK_THROWS_AS(poisson.solve_into(huge, x), InvalidInput);
+    CHECK(x == X);
+    poisson.solve_into(targets, x);  // nothing of it is left
+    CHECK(x == good);
 }
