@@ -7,9 +7,7 @@
 #include <softtissue/material/corotated_linear_polar.hpp>
 #include <softtissue/material/fung_orthotropic.hpp>
 #include <softtissue/material/stable_neo_hookean.hpp>
-#include <softtissue/mesh/laplacian.hpp>
 #include <softtissue/mesh/validate_surface.hpp>
-#include <softtissue/mesh/winding_number.hpp>
 #include <softtissue/skinning/resample.hpp>
 
 #include <support/capsule_body.hpp>
@@ -84,17 +82,6 @@ void open_meshes(Ledger& ledger) {
         positions(1, 12) = x;
         validate_closed_surface(positions, capsule.faces, "surface");
         return Doors<double>::finite(true);
-    });
-    doors.open("vertex of a winding number", "vertex", [&](double x) {
-        Matrix3X<double> positions = capsule.positions;
-        positions(1, 12) = x;
-        const WindingNumber<double> winding(positions, capsule.faces);
-        return Doors<double>::finite(std::isfinite(winding.exact(Vector3<double>(0, 0.5, 0))));
-    });
-    doors.open("vertex of a Laplacian", "triangle", [&](double x) {
-        Matrix3X<double> positions = capsule.positions;
-        positions(1, 12) = x;
-        return Doors<double>::finite(cotangent_laplacian<double>(positions, capsule.faces).toDense().allFinite());
     });
     const Pose<double> rest = Pose<double>::rest(3);
     Motion<double> motion{{rest, rest, rest}, 30.0};

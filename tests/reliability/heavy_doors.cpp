@@ -8,6 +8,7 @@
 #include <softtissue/linalg/principal_components.hpp>
 #include <softtissue/mesh/harmonic.hpp>
 #include <softtissue/mesh/laplacian.hpp>
+#include <softtissue/mesh/winding_number.hpp>
 #include <softtissue/skinning/inverse_kinematics.hpp>
 
 #include <support/capsule_body.hpp>
@@ -22,8 +23,19 @@ namespace {
 using namespace softtissue;
 
 void open_solvers(Ledger& ledger) {
-    Doors<double> doors(ledger, "interpolation, inverse kinematics");
+    Doors<double> doors(ledger, "winding numbers, interpolation, inverse kinematics");
     const CapsuleBody<double> capsule;
+    doors.open("vertex of a winding number", "vertex", [&](double x) {
+        Matrix3X<double> positions = capsule.positions;
+        positions(1, 12) = x;
+        const WindingNumber<double> winding(positions, capsule.faces);
+        return Doors<double>::finite(std::isfinite(winding.exact(Vector3<double>(0, 0.5, 0))));
+    });
+    doors.open("vertex of a Laplacian", "triangle", [&](double x) {
+        Matrix3X<double> positions = capsule.positions;
+        positions(1, 12) = x;
+        return Doors<double>::finite(cotangent_laplacian<double>(positions, capsule.faces).toDense().allFinite());
+    });
     doors.open("values to interpolate", "value", [&](double x) {
         const HarmonicInterpolation<double> harmonic(cotangent_laplacian<double>(capsule.positions, capsule.faces),
                                                      std::vector<std::int32_t>{0, 100, 200});

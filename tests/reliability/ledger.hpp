@@ -111,8 +111,8 @@ public:
     void print_last() const { print(tallies_.back()); }
 
     static void print_head() {
-        std::printf("| %-58s | %8s | %9s | %7s | %6s | %15s | %7s | %8s | %s\n", "what", "tried", "converged",
-                    "refused", "silent", "back at rest", "most it", "slowest", "ended otherwise");
+        std::printf("| %-64s | %8s | %9s | %7s | %6s | %22s | %7s | %8s | %s\n", "what", "tried", "converged",
+                    "refused", "silent", "back at rest, within", "most it", "slowest", "ended otherwise");
     }
 
     long num_failures() const {
@@ -135,12 +135,14 @@ private:
     static void print(const Tally& tally) {
         std::string rest = "-", ended;
         if (tally.could_recover > 0) {
-            rest = std::to_string(tally.recovered) + " of " + std::to_string(tally.could_recover);
+            char furthest[16];
+            std::snprintf(furthest, sizeof(furthest), ", %.0e", tally.furthest);
+            rest = std::to_string(tally.recovered) + " of " + std::to_string(tally.could_recover) + furthest;
         }
         for (const auto& [status, times] : tally.ended) {
             ended += (ended.empty() ? "" : ", ") + std::to_string(times) + " " + status;
         }
-        std::printf("| %-58s | %8ld | %9ld | %7ld | %6ld | %15s | %7d | %6.2f s | %s\n", tally.kind.c_str(),
+        std::printf("| %-64s | %8ld | %9ld | %7ld | %6ld | %22s | %7d | %6.2f s | %s\n", tally.kind.c_str(),
                     tally.tried, tally.converged, tally.refused, tally.silent, rest.c_str(), tally.most_iterations,
                     tally.slowest, ended.c_str());
         for (const std::string& failure : tally.failures) {

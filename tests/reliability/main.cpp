@@ -31,9 +31,9 @@ int main(int argc, char** argv) {
         reliability::run_heavy_doors(ledger);
 #endif
     }
-    reliability::run_matrices(ledger, counts["--matrices"], seed);
     reliability::run_sampled_laws(ledger, counts["--solves"], seed);
 #ifdef SOFTTISSUE_RELIABILITY_ALL
+    reliability::run_matrices(ledger, counts["--matrices"], seed);
     reliability::run_skinning(ledger, counts["--skins"], seed);
     reliability::run_avatars(ledger, counts["--poses"], seed);
     reliability::run_layers(ledger, counts["--poses"], seed);

@@ -186,7 +186,10 @@ private:
     }
 
     void require_finite(ConstRef<MatrixX<Scalar>> values, Index components) const {
-        for (Index row = 0; row < values.rows() && !values.allFinite(); ++row) {
+        if (values.allFinite()) {
+            return;
+        }
+        for (Index row = 0; row < values.rows(); ++row) {
             require(values.row(row).allFinite(), "interpolation: a value of prescribed vertex ",
                     prescribed_[size_t(row / components)], " is not finite");
         }

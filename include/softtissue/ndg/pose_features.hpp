@@ -19,6 +19,7 @@
 #include <softtissue/skinning/kinematic_tree.hpp>
 #include <softtissue/skinning/pose.hpp>
 
+#include <cmath>
 #include <span>
 
 namespace softtissue {
@@ -65,8 +66,8 @@ void pose_features_into(const KinematicTree& tree, const Pose<S>& pose, Eigen::R
             pose.rotation_vectors.cols(), " joints, expected ", tree.num_joints());
     require(pose.translation.allFinite(), "pose features: the translation is not finite");
     for (Index j = 0; j < tree.num_joints(); ++j) {
-        require(pose.rotation_vectors.col(j).allFinite(), "pose features: the rotation vector of joint ", j,
-                " is not finite");
+        require(std::isfinite(pose.rotation_vectors.col(j).squaredNorm()),
+                "pose features: the rotation vector of joint ", j, " is not finite");
     }
     detail::rotation_features_into<N>(
         tree, [&](Index j) -> Matrix3<S> { return local_rotation(pose, j); }, features);

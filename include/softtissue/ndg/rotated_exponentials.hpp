@@ -61,6 +61,8 @@ void rotated_exponentials_into(ConstRef<Matrix9X<N>> Q, const BlendedRotations<S
                                Matrix3X<S>& targets, const E& executor = {}) {
     require(Q.cols() == blended.num_rows() && residuals.cols() == Q.cols(), "rotated exponentials: ", Q.cols(),
             " matrices and room for ", residuals.cols(), ", expected ", blended.num_rows());
+    require(Index(bones.size()) == blended.num_joints(), "rotated exponentials: ", bones.size(), " bones, expected ",
+            blended.num_joints());
     blended.require_bones(bones);
     targets.resize(3, 3 * Q.cols());
     for_each_exponential_block<N>(

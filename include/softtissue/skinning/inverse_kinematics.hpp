@@ -134,9 +134,12 @@ public:
             for (bool accepted = false; !accepted;) {
                 const VectorX<S> step = damped_step(normal, gradient, damping);
                 Pose<S> trial = moved(pose, step);
-                const VectorX<S> trial_residual = residual(goals, trial);
-                const S predicted = step.dot(damping * step - gradient);
-                const S gain = (r.squaredNorm() - trial_residual.squaredNorm()) / predicted;
+                VectorX<S> trial_residual;
+                S gain(0);
+                if (trial.rotation_vectors.allFinite() && trial.translation.allFinite()) {
+                    trial_residual = residual(goals, trial);
+                    gain = (r.squaredNorm() - trial_residual.squaredNorm()) / step.dot(damping * step - gradient);
+                }
                 accepted = gain > S(0);
                 if (accepted) {
                     const S shrink = S(2) * gain - S(1);

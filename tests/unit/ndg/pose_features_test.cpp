@@ -82,6 +82,8 @@ TEST_CASE("what is no pose of the skeleton is refused") {
     pose = Pose<double>::rest(3);
     pose.rotation_vectors(1, 2) = std::numeric_limits<double>::infinity();
     CHECK(message(pose, features) == "pose features: the rotation vector of joint 2 is not finite");
+    pose.rotation_vectors(1, 2) = 1e200;  // its square is infinite: it has no angle
+    CHECK(message(pose, features) == "pose features: the rotation vector of joint 2 is not finite");
     pose = Pose<double>::rest(3);
     pose.translation(1) = nan;
     CHECK(message(pose, features) == "pose features: the translation is not finite");
