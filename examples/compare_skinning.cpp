@@ -4,8 +4,10 @@
 // The embedded body in one pose, skinned in three ways: where they differ, and what each does to the volume.
 #include "support/color_scale.hpp"
 #include "support/embedded_human.hpp"
+#include "support/guarded.hpp"
 #include "support/html_report.hpp"
 #include "support/mesh_picture.hpp"
+#include "support/result_folder.hpp"
 
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/inverse.hpp>
@@ -52,12 +54,8 @@ struct SkinnedPose {
 /// All of the difference that the scales show [m].
 constexpr double largest_difference = 0.02;
 
-int main(int argc, char** argv) {
-    std::string out = "compare_skinning";
-    CLI::App app("Linear blend, dual quaternions and SMPL with pose correctives on the embedded body.");
-    app.add_option("--out", out, "folder for picture and report")->capture_default_str();
-    CLI11_PARSE(app, argc, argv);
-
+static int run(const std::string& out) {
+    const examples::ResultFolder results_alone(out);
     const SmplBody<double> body = examples::embedded_human();
     const VolumetricSmpl<double> linear(body, {}, {.pose_correctives = false});
     const VolumetricSmpl<double, DualQuaternion<double>> dual(body, {}, {.pose_correctives = false});
@@ -146,11 +144,19 @@ int main(int argc, char** argv) {
     page.add_note("The smallest singular value is that of the blended transforms: where it is near zero, skinning squeezes the "
                   "surface flat and cannot be undone.");
     picture.text("dark red: 20 mm from linear blend skinning", 570, 608, 16, 0.5);
-    std::filesystem::create_directories(out);
     const std::filesystem::path folder(out);
     picture.write(folder / "compare_skinning.png");
     std::printf("\npicture in %s/compare_skinning.png\n", out.c_str());
     if (page.write(folder / "report.html")) {
         std::printf("report in %s/report.html\n", out.c_str());
     }
+    return 0;
+}
+
+int main(int argc, char** argv) {
+    std::string out = "compare_skinning";
+    CLI::App app("Linear blend, dual quaternions and SMPL with pose correctives on the embedded body.");
+    app.add_option("--out", out, "folder for picture and report")->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    return examples::guarded("compare_skinning", [&] { return run(out); });
 }

@@ -6,16 +6,18 @@
 #include "layered_body/figures.hpp"
 #include "layered_body/report.hpp"
 #include "support/embedded_human.hpp"
+#include "support/guarded.hpp"
 #include "support/layered_pictures.hpp"
 #include "support/layered_report.hpp"
 #include "support/posing_methods.hpp"
 #include "support/progress.hpp"
+#include "support/result_folder.hpp"
 
 #include <softtissue/skinning/joint_transforms.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <exception>
+#include <algorithm>
 
 namespace {
 
@@ -64,7 +66,7 @@ void examine_boundary(const Scene& scene, const Matrix3X<Scalar>& x, std::span<c
 
 int run_program(const Settings& settings) {
     watch_interrupt();
-    std::filesystem::create_directories(settings.out);
+    const ResultFolder results_alone(settings.out);
     const std::filesystem::path folder(settings.out);
     const Scene scene = make_scene(settings.files);
     const LayeredBodyReport<Scalar>& rest = scene.layered.report;
@@ -169,12 +171,9 @@ int main(int argc, char** argv) {
     app.add_option("--out", settings.out, "folder for results")->capture_default_str();
     app.add_option("--json", settings.json, "file for figures (default: OUT/results.json)");
     CLI11_PARSE(app, argc, argv);
-    try {
+    return guarded("layered_body", [&] {
         std::stable_partition(settings.methods.begin(), settings.methods.end(),
                               [](const std::string& name) { return name == "fem"; });
         return run_program(settings);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "layered_body: %s\n", error.what());
-        return 1;
-    }
+    });
 }

@@ -3,8 +3,10 @@
 //
 // A patch of skin, pulled off its bone by hanging weights from 20 g to 2 kg (Romero et al. 2020, fig. 5): Fung-orthotropic skin against
 // stable neo-Hookean flesh of the same stiffness under small loads.
+#include "support/guarded.hpp"
 #include "support/html_report.hpp"
 #include "support/mesh_picture.hpp"
+#include "support/result_folder.hpp"
 
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/energy/dead_load.hpp>
@@ -22,7 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -199,6 +200,7 @@ bool write_report(const std::filesystem::path& path, const Patch& patch, const s
 }
 
 int run(const std::string& out, int columns) {
+    const examples::ResultFolder results_alone(out);
     const Patch patch(columns);
     Matrix3<double> basis;  // first column: the skin's normal, here z
     basis << 0, 1, 0, 0, 0, 1, 1, 0, 0;
@@ -226,7 +228,6 @@ int run(const std::string& out, int columns) {
     }
     std::printf("\nfrom 0.5 to 2 kg, four times the weight: Fung %.2f times as far, neo-Hookean %.2f times\n",
                 fung_pulls.back() / fung_pulls[5], flesh_pulls.back() / flesh_pulls[5]);
-    std::filesystem::create_directories(out);
     plot(std::filesystem::path(out) / "material_response.png", weights, fung_pulls, flesh_pulls);
     std::printf("plot in %s/material_response.png\n", out.c_str());
     if (write_report(std::filesystem::path(out) / "report.html", patch, weights, responses, fitted_modulus)) {
@@ -244,10 +245,5 @@ int main(int argc, char** argv) {
     app.add_option("--out", out, "folder for plot and report")->capture_default_str();
     app.add_option("--columns", columns, "boxes along a side of the patch")->check(CLI::Range(4, 60))->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    try {
-        return run(out, columns);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "material_response: %s\n", error.what());
-        return 1;
-    }
+    return examples::guarded("material_response", [&] { return run(out, columns); });
 }

@@ -10,24 +10,19 @@
 #include "ndg/evaluate.hpp"
 #include "ndg/generate.hpp"
 #include "ndg/train.hpp"
+#include "support/guarded.hpp"
 
 #include <CLI/CLI.hpp>
-
-#include <cstdio>
-#include <exception>
 
 int main(int argc, char** argv) {
     CLI::App app("Neural deformation gradients: makes training data, trains, evaluates and animates.");
     app.require_subcommand(1);
-    try {
+    return examples::guarded("ndg", [&] {
         examples::add_generate(app);
         examples::add_train(app);
         examples::add_evaluate(app);
         examples::add_animate(app);
         CLI11_PARSE(app, argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "ndg: %s\n", error.what());
-        return 1;
-    }
-    return 0;
+        return 0;
+    });
 }

@@ -4,6 +4,7 @@
 // Carries a motion capture clip over to a body: rotations are copied, the feet stand where the performer's feet stood.
 #include "retarget_motion/inputs.hpp"
 #include "retarget_motion/report.hpp"
+#include "support/guarded.hpp"
 #include "support/progress.hpp"
 
 #include <softtissue/io/amass_file.hpp>
@@ -13,7 +14,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <exception>
 #include <filesystem>
 #include <map>
 
@@ -33,6 +33,7 @@ const std::map<std::string, MotionStyle> styles{{"cmu", MotionStyle::cmu},
 
 int run_program(const Settings& settings) {
     watch_interrupt();
+    static_cast<void>(AtomicFile(settings.out));  // refused now rather than after the work
     const Body body = read_body(settings.body);
     const bool is_bvh = settings.motion.ends_with(".bvh");
     require(is_bvh || settings.style == "smpl", settings.motion, ": expected a .bvh file for style ", settings.style);
@@ -90,10 +91,5 @@ int main(int argc, char** argv) {
     app.add_option("--out", settings.out, "motion in AMASS's layout")->capture_default_str();
     app.add_option("--json", settings.json, "file for figures");
     CLI11_PARSE(app, argc, argv);
-    try {
-        return run_program(settings);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "retarget_motion: %s\n", error.what());
-        return 1;
-    }
+    return guarded("retarget_motion", [&] { return run_program(settings); });
 }

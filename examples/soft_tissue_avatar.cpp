@@ -6,7 +6,9 @@
 #include "soft_tissue_avatar/report.hpp"
 #include "soft_tissue_avatar/scene.hpp"
 #include "support/embedded_human.hpp"
+#include "support/guarded.hpp"
 #include "support/progress.hpp"
+#include "support/result_folder.hpp"
 
 #include <softtissue/anatomy/make_soft_layer.hpp>
 #include <softtissue/avatar/tissue_model.hpp>
@@ -17,7 +19,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -64,7 +65,7 @@ int run_program(const Settings& settings) {
     watch_interrupt();
     AvatarResults results;
     const double begin = seconds();
-    std::filesystem::create_directories(settings.out);
+    const ResultFolder results_alone(settings.out);
     const ThreadExecutor executor(settings.threads);
     const Scene scene = make_scene(settings);
     results.seconds_setup = seconds() - begin;
@@ -117,10 +118,5 @@ int main(int argc, char** argv) {
     app.add_flag("--vtu", settings.vtu, "also write the mesh of every frame for ParaView");
     app.add_flag("--usd", settings.usd, "also write tissue, skin and skeleton of every frame as OpenUSD text");
     CLI11_PARSE(app, argc, argv);
-    try {
-        return run_program(settings);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "soft_tissue_avatar: %s\n", error.what());
-        return 1;
-    }
+    return guarded("soft_tissue_avatar", [&] { return run_program(settings); });
 }

@@ -3,6 +3,7 @@
 
 #include "../support/embedded_human.hpp"
 #include "../support/progress.hpp"
+#include "../support/result_folder.hpp"
 #include "error_picture.hpp"
 #include "evaluation_report.hpp"
 #include "evaluation_run.hpp"
@@ -105,7 +106,7 @@ void write_pictures(const Settings& settings, const ErrorSurface& surface, const
 void evaluate(const Settings& settings) {
     watch_interrupt();
     const double begin = seconds();
-    std::filesystem::create_directories(settings.out);
+    const ResultFolder results_alone(settings.out);
     const DatasetFolder data(settings.data);
     const EvaluationSetup setup = read_setup(settings, data);
     std::vector<SplitResult> splits;

@@ -6,6 +6,7 @@
 #include "training_results.hpp"
 #include "training_run.hpp"
 
+#include <softtissue/io/atomic_file.hpp>
 #include <softtissue/io/fingerprint.hpp>
 #include <softtissue/io/neural_model_file.hpp>
 #include <softtissue/ndg/body_identity.hpp>
@@ -36,6 +37,9 @@ public:
           executor_(settings.threads) {}
 
     void run() {
+        for (const std::string& file : {settings_.out, settings_.json, settings_.png}) {
+            static_cast<void>(AtomicFile(file));  // refused now rather than after the training
+        }
         load();
         Mlp<float> mlp =
             variant_.compressed ? train_compressed() : train_whole(new_network(), "training", 0, settings_.epochs);
@@ -199,9 +203,6 @@ private:
         write_neural_model(settings_.out, model);
         write_loss_chart(settings_.png, loss_chart(settings_.model, stages_));
         write_json(model);
-        for (size_t stage = 0; stage < stages_.size(); ++stage) {
-            std::filesystem::remove(checkpoint_path(stage));
-        }
         for (const TrainingStage& stage : stages_) {
             std::printf("%s: %s; best validation loss %.4g after epoch %td of %zu; %.0f s\n", stage.name.c_str(),
                         stage.status.c_str(), stage.best, stage.best_epoch, stage.training.size(), stage.seconds);
@@ -209,6 +210,9 @@ private:
         std::printf("%td parameters in %s\n  %s\n  %s\n", mlp.parameters().size(), settings_.out.c_str(),
                     settings_.png.c_str(), settings_.json.c_str());
         write_page(model);
+        for (size_t stage = 0; stage < stages_.size(); ++stage) {
+            std::filesystem::remove(checkpoint_path(stage));
+        }
     }
 
     void write_page(const NeuralModel<float>& model) const {

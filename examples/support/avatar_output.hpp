@@ -10,6 +10,7 @@
 #include <softtissue/anatomy/soft_layer.hpp>
 #include <softtissue/io/atomic_file.hpp>
 #include <softtissue/io/gltf.hpp>
+#include <softtissue/io/output_folder.hpp>
 #include <softtissue/io/pvd.hpp>
 #include <softtissue/io/vtu.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
@@ -177,7 +178,7 @@ public:
           frame_rate_(frame_rate),
           stride_(std::max(1, int(frame_rate / 30.0 + 0.5))) {
         if (vtu) {
-            std::filesystem::create_directories(folder_ / "vtu");
+            softtissue::make_output_folder(folder_ / "vtu");
         }
     }
 

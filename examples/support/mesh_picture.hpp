@@ -91,6 +91,7 @@ public:
         cairo_surface_flush(surface_.get());
         softtissue::AtomicFile file(path);
         const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), file.temporary_path().c_str());
+        file.require_written(status != CAIRO_STATUS_WRITE_ERROR);
         softtissue::require(status == CAIRO_STATUS_SUCCESS, path.string(),
                             ": cannot write: ", cairo_status_to_string(status));
         file.commit();
