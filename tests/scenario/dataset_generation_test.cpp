@@ -11,7 +11,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -50,14 +50,24 @@ void make_dataset(const std::filesystem::path& path, int threads) {
         generate_dataset(folder, LimbMaker(), {.threads = threads}, [](const GenerationProgress&) { return true; }));
 }
 
-/// Makes a data set in a process of its own, which is killed after a while; whether that came before its end.
-bool is_killed_while_making(const std::filesystem::path& path, double milliseconds) {
+/// A process of its own that makes a data set.
+pid_t start_making(const std::filesystem::path& path) {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
-        make_dataset(path, 2);
+        try {
+            make_dataset(path, 2);
+        } catch (const std::exception&) {
+            _exit(1);
+        }
         _exit(0);
     }
+    return child;
+}
+
+/// Makes a data set in a process that is killed after a while; whether that came before its end.
+bool is_killed_while_making(const std::filesystem::path& path, double milliseconds) {
+    const pid_t child = start_making(path);
     std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(milliseconds));
     kill(child, SIGKILL);
     int status = 0;
@@ -91,5 +101,25 @@ TEST_CASE("a data set is the same, byte for byte, after twenty kills at random m
     CHECK(kills == 20);
     make_dataset(root / std::to_string(folders), 1);
     CHECK(all_files(root / std::to_string(folders)) == whole);
+    std::filesystem::remove_all(root);
+}
+
+TEST_CASE("three processes that make one data set at once make the same files", "[dataset]") {
+    const std::filesystem::path root =
+        std::filesystem::temp_directory_path() / ("softtissue_datasets_" + std::to_string(getpid()));
+    std::filesystem::create_directories(root);
+    make_dataset(root / "whole", 1);
+    for (int repetition = 0; repetition < 2; ++repetition) {
+        const std::filesystem::path path = root / std::to_string(repetition);
+        for (int process = 0; process < 3; ++process) {
+            static_cast<void>(start_making(path));
+        }
+        int status = 0;
+        for (int process = 0; process < 3; ++process) {
+            REQUIRE(wait(&status) > 0);
+            CHECK(status == 0);
+        }
+        CHECK(all_files(path) == all_files(root / "whole"));
+    }
     std::filesystem::remove_all(root);
 }
