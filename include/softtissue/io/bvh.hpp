@@ -207,6 +207,7 @@ private:
         }
         for (BvhEndSite<S>& site : clip_.end_sites) {
             site.position += skeleton.joints.col(site.joint);
+            require(site.position.allFinite(), file_, ": an end site of joint ", site.joint, " is not finite");
         }
         skeleton.validate(file_);
     }
@@ -229,6 +230,7 @@ private:
             refuse("numbers after the last of ", frames, " frames, expected the end of the file");
         }
         require_rigid_bones();
+        clip_.motion.validate(file_, Index(joints_.size()));  // in S, too
     }
 
     Pose<S> next_pose() {
@@ -241,8 +243,7 @@ private:
             for (const Channel& channel : joint.channels) {
                 const double value = next_real();
                 if (channel.is_rotation) {
-                    const Vector3<double> turn =
-                        Vector3<double>::Unit(channel.axis) * (value * std::numbers::pi / 180.0);
+                    const Vector3<double> turn = value * std::numbers::pi / 180.0 * Vector3<double>::Unit(channel.axis);
                     rotation = quaternion_product<double>(rotation, quaternion_from_rotation_vector<double>(turn));
                 } else {
                     position(channel.axis) = scale_ * value;

@@ -156,7 +156,12 @@ private:
     static nlohmann::ordered_json read_json(const std::filesystem::path& path) {
         std::ifstream stream(path, std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-        nlohmann::ordered_json json = nlohmann::ordered_json::parse(text, nullptr, false);
+        const nlohmann::ordered_json::parser_callback_t refuse_depth = [&](int depth, auto, const auto&) {
+            constexpr int deepest = 100;  // copies and texts of it are made by recursion
+            require(depth < deepest, path.string(), ": is nested too deeply");
+            return true;
+        };
+        nlohmann::ordered_json json = nlohmann::ordered_json::parse(text, refuse_depth, false);
         require(json.is_object(), path.string(), ": is damaged, expected a JSON object");
         return json;
     }

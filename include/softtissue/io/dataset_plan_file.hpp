@@ -14,6 +14,7 @@
 #include <softtissue/io/npz.hpp>
 #include <softtissue/ndg/dataset_plan.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -65,6 +66,7 @@ inline DatasetPlan read_dataset_plan(const std::filesystem::path& path) {
     DatasetPlan plan;
     plan.clips = file.at("clips").strings();
     const MatrixX<double> betas = file.at("body_betas").matrix<double>();
+    require(betas.allFinite(), file.at("body_betas").source(), ": expected finite values");
     const std::vector<std::int32_t> body_split = splits("body_split");
     file.at("body_split").require_shape({betas.rows()});
     for (Index b = 0; b < betas.rows(); ++b) {
@@ -85,8 +87,12 @@ inline DatasetPlan read_dataset_plan(const std::filesystem::path& path) {
                               Pose<double>::rest(num_joints),
                               {source[4 * k], source[4 * k + 1], source[4 * k + 2], source[4 * k + 3]},
                               noise[k]});
+        require(std::isfinite(noise[k]), file.at("pose_noise").source(), ": element ", p, " is ", noise[k],
+                ", expected a finite value");
     }
     file.at("poses").for_each<double>([&](Index i, double value) {
+        require(std::isfinite(value), file.at("poses").source(), ": element ", i, " is ", value,
+                ", expected a finite value");
         plan.poses[size_t(i / (3 * num_joints))].pose.rotation_vectors.data()[i % (3 * num_joints)] = value;
     });
     const std::vector<std::int32_t> sample_split = splits("sample_split");

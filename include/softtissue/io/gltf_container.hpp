@@ -24,6 +24,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace softtissue {
@@ -139,9 +140,11 @@ public:
                             detail::decode_base64(std::string_view(name).substr(comma + 8), content),
                         element.name(), ".uri: expected data in base64");
             } else {
-                require(name.find(':') == std::string::npos && !name.starts_with("/"), element.name(),
-                        ".uri = ", name.substr(0, 80), ", expected data: or the name of a file relative to this one");
-                content = read_file(folder_ / detail::percent_decoded(name), element.name());
+                const std::string beside = detail::percent_decoded(name);
+                require(name.find(':') == std::string::npos && std::filesystem::path(beside).is_relative(),
+                        element.name(), ".uri = ", name.substr(0, 80),
+                        ", expected data: or the name of a file relative to this one");
+                content = read_file(folder_ / beside, element.name());
                 loaded_bytes_ += static_cast<Index>(content.size());
             }
             contents_[name] = std::move(content);
@@ -163,7 +166,8 @@ private:
     }
 
     static std::string read_file(const std::filesystem::path& path, const std::string& name) {
-        require(std::filesystem::is_regular_file(path), name, ": ", path.string(), " is no file");
+        std::error_code error;  // of names that no file can have
+        require(std::filesystem::is_regular_file(path, error), name, ": ", path.string(), " is no file");
         std::ifstream stream(path, std::ios::binary | std::ios::ate);
         require(stream.is_open(), name, ": ", path.string(), " cannot be opened");
         std::string bytes(static_cast<std::size_t>(stream.tellg()), '\0');

@@ -23,6 +23,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -56,6 +57,11 @@ inline std::vector<std::int32_t> read_indices(const NpyArray& array, std::int32_
                 ", expected ", low, " to ", high);
     }
     return values;
+}
+
+inline void require_none_or(Index expected, const NpyArray& array) {
+    require(array.num_elements() == 0 || array.num_elements() == expected, array.source(), ": has ",
+            array.num_elements(), " elements, expected none or ", expected);
 }
 
 template <int rows>
@@ -108,8 +114,9 @@ SkeletalLayers<S> read_layered_body(const std::filesystem::path& path) {
     SkeletalLayers<S> result;
     LayeredBody<S>& layered = result.body.layered;
     SimulatedRegion<S>& region = layered.region;
-    layered.skin_offsets = file.at("skin_offsets").columns3<S>();
+    layered.skin_offsets = detail::read_positions<S>(file.at("skin_offsets"), NpyArray::any);
     const Index columns = layered.skin_offsets.cols();
+    require(columns > 0, file.path(), ": a body without skin, expected at least one column");
     layered.layers = {columns, 2};
     const Index vertices = layered.layers.num_vertices();
     layered.mesh.rest_positions = detail::read_positions<S>(file.at("rest_positions"), vertices);
@@ -123,7 +130,10 @@ SkeletalLayers<S> read_layered_body(const std::filesystem::path& path) {
             " cells, expected two for each of ", region.num_triangles(), " triangles");
     region.region_vertices = detail::read_indices(file.at("region_vertices"), -1, columns - 1);
     region.body_vertices = detail::read_indices(file.at("body_vertices"), 0, Index(region.region_vertices.size()) - 1);
-    region.body_triangles = file.at("body_triangles").as<std::int32_t>();
+    region.body_triangles =
+        detail::read_indices(file.at("body_triangles"), 0, std::numeric_limits<std::int32_t>::max());
+    detail::require_none_or(columns, file.at("body_vertices"));
+    detail::require_none_or(region.num_triangles(), file.at("body_triangles"));
     const std::vector<std::int32_t> loops = detail::read_indices(file.at("loops"), 0, columns - 1);
     size_t begin = 0;
     for (const std::int32_t size : detail::read_indices(file.at("loop_sizes"), 0, Index(loops.size()))) {
@@ -134,12 +144,15 @@ SkeletalLayers<S> read_layered_body(const std::filesystem::path& path) {
         begin += size_t(size);
     }
     region.cut_distance = file.at("cut_distance").vector<S>();
+    detail::require_none_or(columns, file.at("cut_distance"));
+    require((region.cut_distance.array() >= S(0)).all(), file.at("cut_distance").source(), ": expected distances >= 0");
     result.tree = KinematicTree(file.at("parents").as<std::int32_t>());
     result.body.joints = detail::read_positions<S>(file.at("joints"), result.tree.num_joints());
     require(layered.weights.num_joints() == result.tree.num_joints(), file.path(), ": weights for ",
             layered.weights.num_joints(), " joints, expected ", result.tree.num_joints());
     if (file.contains("joint_names")) {
         result.joint_names = file.at("joint_names").strings();
+        detail::require_none_or(result.tree.num_joints(), file.at("joint_names"));
     }
     return result;
 }

@@ -91,7 +91,7 @@ public:
         bool fits = json.is_array();
         std::vector<T> result;
         for (const nlohmann::json& item : json) {
-            fits = fits && (std::is_same_v<T, std::string> ? item.is_string() : item.is_number_integer());
+            fits = fits && is_a<T>(item);
             if (fits) {
                 result.push_back(item.get<T>());
             }
@@ -102,6 +102,16 @@ public:
     }
 
 private:
+    template <class T>
+    static bool is_a(const nlohmann::json& item) {
+        if constexpr (std::is_same_v<T, std::string>) {
+            return item.is_string();
+        } else {
+            return item.is_number_unsigned() ? std::in_range<T>(item.get<std::uint64_t>())
+                                             : item.is_number_integer() && std::in_range<T>(item.get<std::int64_t>());
+        }
+    }
+
     const SafetensorsFile* file_;
 };
 
@@ -116,6 +126,15 @@ Mlp<N> read_network(const SafetensorsFile& file, std::set<std::string>& unread) 
         unread.erase("net." + tensor.name);
     }
     return mlp;
+}
+
+/// The folded layer has as many columns as the layer before has outputs, the decoder as many as the network has.
+template <RealScalar N>
+void require_foldable(const SafetensorsFile& file, const Mlp<N>& mlp) {
+    constexpr Index max_expansion = 64;  // what a file can make a program allocate is bounded by its size
+    const Index columns = mlp.weight(mlp.layers().num_hidden()).cols();
+    require(columns <= max_expansion * mlp.sizes().outputs, file.path(), ": a decoder of ", mlp.sizes().outputs,
+            " coefficients behind a layer of ", columns, ", expected at least one for ", max_expansion);
 }
 
 inline ShapeSpace<double> read_shape_space(const SafetensorsFile& file, std::set<std::string>& unread) {
@@ -180,7 +199,7 @@ NeuralModel<N> read_neural_model(const std::filesystem::path& path) {
     options.rotation = metadata.flag("rotation");
     options.shape_input = metadata.flag("shape_input");
     BodyIdentity body{metadata.list<std::string>("joint_names"), metadata.list<std::int32_t>("parents"),
-                      metadata.number<Index>("num_vertices"), metadata.number<Index>("num_cells"),
+                      metadata.number<std::uint32_t>("num_vertices"), metadata.number<std::uint32_t>("num_cells"),
                       metadata.number<std::uint64_t>("connectivity", 16)};
     require(body.joint_names.empty() || body.joint_names.size() == body.parents.size(), file.path(), ": ",
             body.joint_names.size(), " joint names for ", body.parents.size(), " parents");
@@ -191,6 +210,7 @@ NeuralModel<N> read_neural_model(const std::filesystem::path& path) {
     }
     Mlp<N> mlp = detail::read_network<N>(file, unread);
     if (file.contains("decoder.weight")) {
+        detail::require_foldable(file, mlp);
         mlp = fold_decoder(mlp, LinearDecoder<N>{file.at("decoder.weight").template matrix<N>(),
                                                  file.at("decoder.bias").template vector<N>()});
         unread.erase("decoder.weight");

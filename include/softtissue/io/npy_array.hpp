@@ -89,8 +89,9 @@ public:
     Index num_elements() const { return count_npy_elements(source_, header_.shape); }
     std::span<const unsigned char> file_bytes() const { return file_; }
 
-    /// Throws unless the shape is `expected`, where `any` fits every extent.
+    /// Throws unless the shape is `expected`, where `any` fits every extent, and there is an element for each place in it.
     void require_shape(const std::vector<Index>& expected) const {
+        require_plain();
         bool fits = expected.size() == shape().size();
         for (std::size_t d = 0; fits && d < expected.size(); ++d) {
             fits = expected[d] == any || expected[d] == shape()[d];
@@ -101,7 +102,7 @@ public:
     /// Calls f(i, value) for each element i in C order, converted to T.
     template <class T, class Function>
     void for_each(const Function& f) const {
-        require(header_.unsupported.empty(), source_, ": ", header_.unsupported, "; expected numbers of 1 to 8 bytes");
+        require_plain();
         switch (header_.type.kind) {
             case 'f':
                 return header_.type.size == 4 ? for_each_of<float, T>(f) : for_each_of<double, T>(f);
@@ -119,6 +120,7 @@ public:
     /// All elements in C order.
     template <class T>
     std::vector<T> as() const {
+        require_plain();
         std::vector<T> values(size());
         for_each<T>([&](Index i, T value) { values[std::size_t(i)] = value; });
         return values;
@@ -201,6 +203,11 @@ private:
             std::memcpy(file.data() + text.size(), data, count * type.size);
         }
         return {"array", std::move(file)};
+    }
+
+    /// Before anything is allocated: the shape of elements that cannot be read is only a claim.
+    void require_plain() const {
+        require(header_.unsupported.empty(), source_, ": ", header_.unsupported, "; expected numbers of 1 to 8 bytes");
     }
 
     std::size_t size() const { return static_cast<std::size_t>(num_elements()); }

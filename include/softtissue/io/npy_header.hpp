@@ -231,6 +231,9 @@ inline NpyHeader parse_npy_header(const std::string& source, std::span<const uns
                            bytes.begin() + std::ptrdiff_t(dictionary + length));
     detail::NpyDictionary(source, text).parse_into(header);
     header.data_offset = dictionary + length;
+    constexpr std::size_t most_dimensions = 64;  // of numpy
+    require(header.shape.size() <= most_dimensions, source, ": has ", header.shape.size(),
+            " dimensions, expected at most ", most_dimensions);
     const auto count = static_cast<std::size_t>(count_npy_elements(source, header.shape));
     const std::size_t available = bytes.size() - header.data_offset;
     if (header.unsupported.empty()) {

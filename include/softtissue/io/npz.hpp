@@ -4,7 +4,7 @@
 ///
 /// What        reads every array of a file into memory (stored or deflated members, zip64); writes a file at once.
 /// Refuses     a file that is missing, no zip archive, cut off, damaged (the checksum of every member is verified), or that
-///             claims members larger than it can hold (InvalidInput names file and array).
+///             claims members larger than it can hold, each or together (InvalidInput names file and array).
 /// Example     const NpzFile file = read_npz("walk.npz");
 ///             const Matrix3X<double> translations = file.at("trans").columns3<double>();
 ///             write_npz("out.npz", {{"x", NpyArray::from_columns(x)}});
@@ -91,17 +91,19 @@ inline ZipArchive open_zip(const std::string& path) {
     return archive;
 }
 
-/// The content of member `index`, its size and checksum verified.
+/// The content of member `index`, its size and checksum verified. Of the `unclaimed` bytes of the file it takes its own, so
+/// that many members cannot share the same ones.
 inline std::vector<unsigned char> read_zip_member(zip_t* archive, zip_uint64_t index, const std::string& source,
-                                                  std::uintmax_t file_size) {
+                                                  std::uintmax_t& unclaimed) {
     zip_stat_t stat;
     zip_stat_init(&stat);
     const bool has_sizes = zip_stat_index(archive, index, 0, &stat) == 0 && (stat.valid & ZIP_STAT_SIZE) != 0 &&
                            (stat.valid & ZIP_STAT_COMP_SIZE) != 0;
     require(has_sizes, source, ": its directory entry is damaged: ", zip_strerror(archive));
     constexpr zip_uint64_t largest_deflate_ratio = 1032;  // 258 bytes from 2 bits
-    require(stat.comp_size <= file_size && stat.size / largest_deflate_ratio <= stat.comp_size, source, ": claims ",
-            stat.size, " bytes, more than a file of ", file_size, " bytes can hold");
+    require(stat.comp_size <= unclaimed && stat.size / largest_deflate_ratio <= stat.comp_size, source, ": claims ",
+            stat.size, " bytes, more than a file of this size can hold");
+    unclaimed -= stat.comp_size;
     const std::unique_ptr<zip_file_t, ZipMemberClose> member(zip_fopen_index(archive, index, 0));
     require(member != nullptr, source, ": cannot be read: ", zip_strerror(archive));
 
@@ -144,7 +146,7 @@ inline NpzFile read_npz(const std::filesystem::path& path) {
     const std::string file = path.string();
     require(!std::filesystem::is_directory(path), file, ": is a folder, expected an npz file");
     const detail::ZipArchive archive = detail::open_zip(file);
-    const std::uintmax_t file_size = std::filesystem::file_size(path);
+    std::uintmax_t unclaimed = std::filesystem::file_size(path);
     NpyArrays arrays;
     const zip_int64_t members = zip_get_num_entries(archive.get(), 0);
     for (zip_int64_t m = 0; m < members; ++m) {
@@ -158,7 +160,7 @@ inline NpzFile read_npz(const std::filesystem::path& path) {
         name.resize(name.size() - 4);
         const std::string source = file + ": array '" + name + "'";
         require(arrays.count(name) == 0, source, ": appears twice");
-        arrays.emplace(name, NpyArray(source, detail::read_zip_member(archive.get(), index, source, file_size)));
+        arrays.emplace(name, NpyArray(source, detail::read_zip_member(archive.get(), index, source, unclaimed)));
     }
     return {file, std::move(arrays)};
 }

@@ -63,8 +63,13 @@ public:
         require(!corners_.empty(), file_, ": no faces");
         using Coordinates = Eigen::Map<const Matrix3X<double>>;
         using Corners = Eigen::Map<const Triangles>;
-        return {Coordinates(coordinates_.data(), 3, num_vertices()).template cast<S>(),
-                Corners(corners_.data(), 3, Index(corners_.size()) / 3)};
+        ObjMesh<S> mesh{Coordinates(coordinates_.data(), 3, num_vertices()).template cast<S>(),
+                        Corners(corners_.data(), 3, Index(corners_.size()) / 3)};
+        for (Index v = 0; v < num_vertices(); ++v) {
+            require(mesh.positions.col(v).allFinite(), file_, ": vertex ", v + 1, " is too large for ", 8 * sizeof(S),
+                    " bits");
+        }
+        return mesh;
     }
 
 private:

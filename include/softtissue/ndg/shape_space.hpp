@@ -39,7 +39,8 @@ public:
                 "shape space: a mean of ", c.mean.size(), " numbers, components of ", c.components.rows(), " x ",
                 c.components.cols(), ", ", c.standard_deviations.size(),
                 " deviations, expected three numbers a vertex");
-        require(c.mean.allFinite() && c.components.allFinite() && (c.standard_deviations.array() > S(0)).all(),
+        require(c.mean.allFinite() && c.components.allFinite() && c.standard_deviations.allFinite() &&
+                    (c.standard_deviations.array() > S(0)).all(),
                 "shape space: expected finite numbers and positive deviations");
     }
 

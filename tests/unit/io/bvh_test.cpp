@@ -151,6 +151,16 @@ TEST_CASE("another number of frames than stated is refused") {
     CHECK(contains(refused_with(" 45\n", " 45x\n"), "found '45x', expected a finite number"));
 }
 
+TEST_CASE("what is finite in the file but not in memory is refused") {
+    const auto refused_as_float = [](const std::string& from, const std::string& to) {
+        return refusal([&] { static_cast<void>(read<float>(replaced(hierarchy + motion, from, to))); });
+    };
+    CHECK(contains(refused_as_float("OFFSET 0 0 2", "OFFSET 0 0 1e39"), "an end site of joint 2 is not finite"));
+    CHECK(contains(refused_as_float("1 2 3 90", "1e39 2 3 90"), "frame 1: translation is not finite"));
+    CHECK(contains(refused_as_float(" 90 ", " 1e300 "), "frame 1, joint 0: rotation is not finite"));
+    CHECK(contains(refused_as_float(".05", "1e-320"), "frame rate is inf"));
+}
+
 TEST_CASE("a file cut off anywhere is refused") {
     const std::string whole = hierarchy + motion;
     for (std::size_t size = 0; size + 3 < whole.size();

@@ -87,6 +87,9 @@ TEST_CASE("a folder without plan, of another definition or format is refused") {
     CHECK(refused().find("format") != std::string::npos);
     write_bytes(temporary / "data" / "plan.json", "{\"for");
     CHECK(refused().find("damaged") != std::string::npos);
+    const std::string deep = "{\"format\": " + std::string(100000, '[');
+    write_bytes(temporary / "data" / "plan.json", deep + std::string(100000, ']') + "}");
+    CHECK(refused().find("nested too deeply") != std::string::npos);
 }
 
 TEST_CASE("a sample of another number, body or mesh is refused, and one that is not there") {

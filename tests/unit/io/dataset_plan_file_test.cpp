@@ -7,6 +7,10 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <span>
+#include <vector>
+
 using namespace softtissue;
 using namespace softtissue_test;
 using namespace io_test;
@@ -55,6 +59,12 @@ TEST_CASE("arrays that do not fit together are refused, and an empty plan") {
     refused("sample_split", detail::index_array(std::vector<std::int32_t>(24, 4)));
     refused("body_split", detail::index_array({0}));
     refused("pose_noise", NpyArray::from_scalar(0.0));
+    const DatasetPlan plan = limb_plan();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    refused("pose_noise", detail::vector_array<double>(VectorX<double>::Constant(Index(plan.poses.size()), nan)));
+    refused("body_betas", NpyArray::from_columns(MatrixX<double>::Constant(2, plan.num_bodies(), nan).eval()));
+    const std::vector<double> rotations(6 * plan.poses.size(), nan);
+    refused("poses", NpyArray::from_values(std::span<const double>(rotations), {Index(plan.poses.size()), 2, 3}));
     std::vector<std::int32_t> descending(24, 1);
     descending.back() = 0;
     refused("sample_body", detail::index_array(descending));

@@ -118,7 +118,10 @@ TEST_CASE("buffers that are not what they say are refused") {
     CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": "data:text,QUJD"})"), "expected data in base64"));
     CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": "http://x/y.bin"})"), "buffers[0].uri = http://x/y.bin"));
     CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": "/etc/hostname"})"), "relative to this one"));
+    CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": "%2Fetc%2Fhostname"})"), "relative to this one"));
     CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": "none.bin"})"), "none.bin is no file"));
+    const std::string long_name(300, 'n');
+    CHECK(contains(with_buffer("{\"byteLength\": 4, \"uri\": \"" + long_name + "\"}"), "is no file"));
     CHECK(contains(with_buffer(R"({"byteLength": 4, "uri": 7})"), "buffers[0].uri = 7, expected a text"));
     write_bytes(folder / "short.bin", "abc");
     CHECK(

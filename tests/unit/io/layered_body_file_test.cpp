@@ -91,4 +91,11 @@ TEST_CASE("files that do not fit together are refused, with the file's name") {
                                   Matrix3X<double>::Constant(3, 300, std::numeric_limits<double>::quiet_NaN()).eval()));
     refused("rest_positions", NpyArray::from_columns(Matrix3X<double>::Zero(3, 299).eval()));
     refused("weights", NpyArray::from_matrix(MatrixX<double>::Constant(300, 1, 1.0).eval()));
+    refused("skin_offsets",
+            NpyArray::from_columns(Matrix3X<double>::Constant(3, 100, std::numeric_limits<double>::infinity()).eval()));
+    refused("cut_distance", detail::vector_array<double>(VectorX<double>::Constant(100, -1)));
+    refused("cut_distance", detail::vector_array<double>(VectorX<double>::Zero(99)));
+    refused("body_triangles", from({0, 1, 2}));
+    refused("body_triangles", from(std::vector<std::int32_t>(180, -1)));
+    refused("joint_names", NpyArray::from_strings({"upper"}, {1}));
 }

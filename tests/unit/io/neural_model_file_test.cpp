@@ -92,6 +92,16 @@ TEST_CASE("a decoder behind the network is folded into it") {
     CHECK(found.mlp.parameters() == fold_decoder(small, decoder).parameters());
 }
 
+TEST_CASE("a decoder that would make far more weights than the file has is refused") {
+    const std::string message = refusal_after([](NamedTensors& tensors, TensorMetadata&) {
+        std::erase_if(tensors, [](const auto& item) { return item.first.starts_with("net."); });
+        store_network(Mlp<float>({.inputs = 11, .hidden = {65}, .outputs = 1}), "net.", tensors);
+        tensors.emplace_back("decoder.weight", StoredTensor::from_matrix(MatrixX<float>::Zero(3240, 1)));
+        tensors.emplace_back("decoder.bias", StoredTensor::from_vector(VectorX<float>::Zero(3240)));
+    });
+    CHECK(message == "a decoder of 1 coefficients behind a layer of 65, expected at least one for 64");
+}
+
 TEST_CASE("what is no model, or not this one, is refused with one message") {
     CHECK(refusal_after([](NamedTensors&, TensorMetadata&) {}).empty());
     CHECK(with_metadata("softtissue_model", "2") == "softtissue_model is '2', expected '1'");
@@ -101,6 +111,10 @@ TEST_CASE("what is no model, or not this one, is refused with one message") {
     CHECK(with_metadata("rotation", "yes") == "rotation is 'yes', expected 'true' or 'false'");
     CHECK(with_metadata("num_cells", "36O") == "num_cells is '36O', expected a whole number");
     CHECK(with_metadata("num_cells", "361") == "a network of 3240 outputs, expected nine for each of 361 cells");
+    CHECK(with_metadata("num_cells", "9223372036854775807").find("expected a whole number") != std::string::npos);
+    CHECK(with_metadata("num_vertices", "-1") == "num_vertices is '-1', expected a whole number");
+    CHECK(with_metadata("parents", "[-1, 4294967296]") ==
+          "parents is '[-1, 4294967296]', expected a list of whole numbers");
     CHECK(with_metadata("parents", "[-1, 0.5]") == "parents is '[-1, 0.5]', expected a list of whole numbers");
     CHECK(with_metadata("parents", "[-1") == "parents is '[-1', expected a list of whole numbers");
     CHECK(with_metadata("joint_names", "[1, 2]") == "joint_names is '[1, 2]', expected a list of texts");

@@ -146,3 +146,14 @@ TEST_CASE("pickled objects are refused with a sentence") {
     CHECK(contains(refusal([&] { static_cast<void>(array("<f2", false, "()", "ab").as<float>()); }),
                    "its element type is '<f2'"));
 }
+
+TEST_CASE("elements that cannot be read take no memory, whatever their shape claims") {
+    const NpyArray objects = array("|O", false, "(1099511627776, 3)", "");
+    for (const std::string& refused : {refusal([&] { static_cast<void>(objects.as<double>()); }), refusal([&] {
+                                           objects.require_shape({NpyArray::any, 3});
+                                       }),
+                                       refusal([&] { static_cast<void>(objects.matrix<double>()); }),
+                                       refusal([&] { static_cast<void>(objects.columns3<float>()); })}) {
+        CHECK(contains(refused, "it holds pickled Python objects"));
+    }
+}

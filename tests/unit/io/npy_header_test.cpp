@@ -112,4 +112,9 @@ TEST_CASE("the shape must be that of the data, however large it claims to be") {
     CHECK(contains(refused(npy_image(dictionary("<f8", "(99999999999999999999,)"), "")), "shape is too large"));
     // 2^61 elements of 8 bytes are 2^64 bytes, which wraps to 0.
     CHECK(contains(refused(npy_image(dictionary("<f8", "(2305843009213693952,)"), "")), "has 0 bytes of data"));
+    std::string ones;
+    for (int dimension = 0; dimension < 65; ++dimension) {
+        ones += "1,";
+    }
+    CHECK(contains(refused(npy_image(dictionary("<f8", "(" + ones + ")"), std::string(8, '\0'))), "has 65 dimensions"));
 }

@@ -203,7 +203,20 @@ TEST_CASE("claims that no file of this size can hold are refused before memory i
     std::string bomb = numpy_zip({{"x.npy", scalar_image}});
     bomb.replace(bomb.find("PK\x01\x02") + 24, 4, little_endian(0x7FFFFFF0, 4));
     write_bytes(folder / "b.npz", bomb);
-    CHECK(contains(refused(folder / "b.npz"), "array 'x': claims 2147483632 bytes, more than a file of"));
+    CHECK(contains(refused(folder / "b.npz"), "array 'x': claims 2147483632 bytes, more than a file of this size"));
+
+    write_npz(folder / "a.npz", {{"x", sample_arrays().at("ramp")}});  // and now three members made of the same bytes
+    const std::string bytes = read_bytes(folder / "a.npz");
+    const std::size_t first = bytes.find("PK\x01\x02"), end = bytes.find("PK\x05\x06");
+    std::string shared = bytes.substr(0, first);
+    for (const char* name : {"x", "y", "z"}) {
+        std::string entry = bytes.substr(first, end - first);
+        shared += entry.replace(entry.rfind("x.npy"), 1, name);
+    }
+    const std::string count = little_endian(3, 2), size = little_endian(shared.size() - first, 4);
+    shared += bytes.substr(end).replace(8, 8, count + count + size);
+    write_bytes(folder / "b.npz", shared);
+    CHECK(contains(refused(folder / "b.npz"), "array 'y': claims"));
 }
 
 TEST_CASE("members that are no arrays in spite of their name, or appear twice, are refused") {

@@ -67,6 +67,10 @@ TEST_CASE("what cannot be read is refused with its line") {
     }
     CHECK(contains(refused(square + "f 1 2"), "line 5 is 'f 1 2', expected a face of at least three vertices"));
     CHECK(contains(refused(square), "a.obj: no faces"));
+    const TemporaryFolder folder;
+    write_bytes(folder / "b.obj", "v 0 0 0\nv 1 0 0\nv 0 1e39 0\nf 1 2 3");
+    CHECK(contains(refusal([&] { static_cast<void>(read_obj<float>(folder / "b.obj")); }),
+                   "b.obj: vertex 3 is too large for 32 bits"));
     CHECK(contains(refused(""), "a.obj: no faces"));
     CHECK(
         contains(refusal([] { static_cast<void>(read_obj<double>("/none/a.obj")); }), "/none/a.obj: cannot be opened"));

@@ -58,8 +58,10 @@ TEST_CASE("bodies of another size are refused") {
                          "shape space: body 3 has 41 vertices, expected 40", InvalidInput);
     CHECK_THROWS_WITH_AS(ShapeSpace<double>::from_bodies({}, {}), "shape space: no bodies", InvalidInput);
     PrincipalComponents<double> broken = space.components();
-    broken.standard_deviations(1) = 0;
-    CHECK_THROWS_WITH_AS(ShapeSpace<double>{broken}, "shape space: expected finite numbers and positive deviations",
-                         InvalidInput);
+    for (const double deviation : {0.0, std::numeric_limits<double>::infinity()}) {
+        broken.standard_deviations(1) = deviation;
+        CHECK_THROWS_WITH_AS(ShapeSpace<double>{broken}, "shape space: expected finite numbers and positive deviations",
+                             InvalidInput);
+    }
     CHECK(ShapeSpace<double>().num_coefficients() == 0);
 }
