@@ -134,41 +134,42 @@ void take_over(benchmark::State& state) {
     }
 }
 
-template <class S>
-void own_cholesky(benchmark::State& state) {
+/// Each round factors and solves; the pattern is analysed once.
+template <class S, class Solver>
+void factorise(benchmark::State& state, Solver& solver, double (*flops_of)(const Solver&)) {
     const System<S>& system = System<S>::get();
-    SupernodalCholesky<S> cholesky;
-    cholesky.analyzePattern(system.H.matrix());
-    VectorX<S> p;
-    for (auto _ : state) {
-        cholesky.factorize(system.H.matrix());
-        p = cholesky.solve(system.rhs);
-        benchmark::DoNotOptimize(p.data());
-    }
-    count(state, p);
-    double flops = 0;
-    for (const Front& front : cholesky.analysis()->fronts()) {
-        for (Index k = 0; k < front.width; ++k) {
-            flops += double(front.height - k) * double(front.height - k);
-        }
-    }
-    count_work<S>(state, {.unit = "factors", .items = 1, .flops = flops});
-}
-
-#ifdef SOFTTISSUE_HAS_CHOLMOD
-template <int ordering>
-void cholmod(benchmark::State& state) {
-    const System<double>& system = System<double>::get();
-    TunedCholmod<CHOLMOD_SUPERNODAL, ordering> solver;
     solver.analyzePattern(system.H.matrix());
-    VectorX<double> p;
+    VectorX<S> p;
     for (auto _ : state) {
         solver.factorize(system.H.matrix());
         p = solver.solve(system.rhs);
         benchmark::DoNotOptimize(p.data());
     }
     count(state, p);
-    count_work<double>(state, {.unit = "factors", .items = 1, .flops = solver.flops()});
+    count_work<S>(state, {.unit = "factors", .items = 1, .flops = flops_of(solver)});
+}
+
+template <class S>
+void own_cholesky(benchmark::State& state) {
+    using Solver = SupernodalCholesky<S>;
+    Solver solver;
+    factorise<S, Solver>(state, solver, [](const Solver& cholesky) {
+        double flops = 0;
+        for (const Front& front : cholesky.analysis()->fronts()) {
+            for (Index k = 0; k < front.width; ++k) {
+                flops += double(front.height - k) * double(front.height - k);
+            }
+        }
+        return flops;
+    });
+}
+
+#ifdef SOFTTISSUE_HAS_CHOLMOD
+template <int ordering>
+void cholmod(benchmark::State& state) {
+    using Solver = TunedCholmod<CHOLMOD_SUPERNODAL, ordering>;
+    Solver solver;
+    factorise<double, Solver>(state, solver, [](const Solver& cholesky) { return cholesky.flops(); });
 }
 
 #endif
