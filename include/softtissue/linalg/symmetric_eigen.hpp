@@ -17,6 +17,7 @@
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/linalg/jacobi_rotation.hpp>
 #include <softtissue/linalg/tridiagonal_ql.hpp>
 #include <softtissue/linalg/unit_scale.hpp>
 
@@ -42,14 +43,11 @@ Scalar& lower_entry(Eigen::Matrix<Scalar, N, N>& H, int i, int j) {
 /// Makes H(q, p), p < q, zero where `is_off`: H <- G^T H G, V <- V G; of H the lower triangle.
 template <class Scalar, class Mask, int N>
 void jacobi_rotate(const Mask& is_off, Eigen::Matrix<Scalar, N, N>& H, Eigen::Matrix<Scalar, N, N>& V, int p, int q) {
-    using std::copysign;
     const Scalar zero(0), one(1);
-    const Scalar difference = H(q, q) - H(p, p);
-    const Scalar twice = H(q, p) + H(q, p);
-    const Scalar root = quick_sqrt(Scalar(difference * difference + twice * twice));
-    const Scalar t = select(is_off, Scalar(twice * reciprocal(Scalar(difference + copysign(root, difference)))), zero);
-    const Scalar c = reciprocal_sqrt(Scalar(t * t + one));
-    const Scalar s = t * c;
+    const JacobiRotation<Scalar> rotation(Scalar(H(q, q) - H(p, p)), Scalar(H(q, p) + H(q, p)));
+    const Scalar c = select(is_off, rotation.cosine, one);
+    const Scalar s = select(is_off, rotation.sine, zero);
+    const Scalar t = select(is_off, rotation.tangent, zero);
     const auto turn = [&](Scalar& a, Scalar& b) {
         const Scalar old = a;
         a = c * old - s * b;
