@@ -11,7 +11,8 @@
 ///             about the curvature (limited_memory_bfgs.hpp), while each gains a twentieth of the iteration's decrease.
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
 ///             decrement_tolerance: decrease that an exact Newton step, then applied, promises; gradient_tolerance: largest
-///             gradient component; or a status that says why not. A filtered step never ends a solve as converged.
+///             gradient component; or a status that says why not. A filtered step never ends a solve as converged. Where the last
+///             step is lost in the rounding of the energy: precision_limit.
 /// Cost        no allocation after the first iteration, nor in any with the NewtonWorkspace of a former solve
 /// Refuses     nothing: outcomes are in the SolveReport.
 /// Source      Nocedal & Wright 2006, alg. 3.2; Chen et al. 2024 (absolute filter), 2024b (adaptive filter); Nolte et al. 2026, sec. 3.2
@@ -93,12 +94,14 @@ public:
             const Scalar step = w_.direction.cwiseAbs().maxCoeff();
             report_.decrement = -w_.gradient.dot(w_.direction) / Scalar(2);
             const StepOutcome outcome = take_step();
+            const bool is_small = step <= options_.step_tolerance || report_.decrement <= options_.decrement_tolerance;
             if (outcome == StepOutcome::none) {
-                return ended(SolveStatus::line_search_stalled);
+                // the step that would end the solve is lost in the rounding of the energy
+                const bool is_there = is_small && hessian_ == HessianKind::exact;
+                return ended(is_there ? SolveStatus::precision_limit : SolveStatus::line_search_stalled);
             }
             refresh_gradient();
             remember_step();
-            const bool is_small = step <= options_.step_tolerance || report_.decrement <= options_.decrement_tolerance;
             if (is_small && hessian_ == HessianKind::exact) {
                 return ended(SolveStatus::converged);
             }

@@ -51,6 +51,12 @@ struct NotANumber : Spring<double> {
     double second(double) const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
+/// A spring whose energy is rounded so coarsely that it seems to rise with every step.
+struct CoarseSpring : Spring<double> {
+    double start = 0;
+    double value(double x) const { return 1 + Spring<double>::value(x) + (x == start ? 0.0 : 1e-12); }
+};
+
 /// Minimises the sum of `f` over two vertices, the first of them held, from `start`.
 template <class S, class Function>
 struct Solve {
@@ -171,6 +177,17 @@ TEST_CASE("derivatives that lie end in a status, not in a wrong answer") {
     CHECK(hessian.d(0, 1) == 1.0);
 }
 
+TEST_CASE("a last step that is lost in the rounding of the energy ends the solve well, a longer one does not") {
+    CoarseSpring coarse;
+    coarse.start = 5e-10;
+    Solve<double, CoarseSpring> near(coarse, coarse.start, {.step_tolerance = 1e-9});
+    CHECK(near.report.status == SolveStatus::precision_limit);
+    CHECK(near.d(0, 1) == coarse.start);
+    coarse.start = 5e-8;
+    Solve<double, CoarseSpring> far(coarse, coarse.start, {.step_tolerance = 1e-9});
+    CHECK(far.report.status == SolveStatus::line_search_stalled);
+}
+
 TEST_CASE("the gradient tolerance stops, at the start if it is met there") {
     Solve<double, Spring<double>> met({.stiffness = 1, .centre = 1e-4}, 0.0, {.gradient_tolerance = 1e-3});
     CHECK(met.report.status == SolveStatus::converged);
@@ -219,10 +236,12 @@ TEST_CASE("steps between the iterations save Hessians and never raise the energy
     CHECK(std::abs(solve.d(0, 1)) < 1e-9);
     check_monotone(solve.energies, solve.report.energy);
     // it is still an exact step that ends the solve
-    const Solve<double, Exponential<double>> decrement({}, 2.0, {.step_tolerance = 0, .decrement_tolerance = 1e-6, .quasi_newton_steps = 5});
+    const Solve<double, Exponential<double>> decrement(
+        {}, 2.0, {.step_tolerance = 0, .decrement_tolerance = 1e-6, .quasi_newton_steps = 5});
     CHECK(decrement.report.status == SolveStatus::converged);
     CHECK(decrement.report.decrement <= 1e-6);
-    CHECK(decrement.energies.back() - decrement.report.energy == doctest::Approx(decrement.report.decrement).epsilon(0.01));
+    CHECK(decrement.energies.back() - decrement.report.energy ==
+          doctest::Approx(decrement.report.decrement).epsilon(0.01));
 }
 
 TEST_CASE("the adaptive filter clamps where the model predicts well") {
@@ -230,7 +249,8 @@ TEST_CASE("the adaptive filter clamps where the model predicts well") {
     Solve<double, DoubleWell<double>> badly_predicted({}, 0.3, {.adapts_filter = true});
     CHECK(badly_predicted.report.status == SolveStatus::converged);
     // the filtered steps of a quadratic are predicted exactly
-    Solve<double, Spring<double>> well_predicted({.stiffness = 1, .centre = 5}, 0.0, {.adapts_filter = true, .far_step = 1e-3});
+    Solve<double, Spring<double>> well_predicted({.stiffness = 1, .centre = 5}, 0.0,
+                                                 {.adapts_filter = true, .far_step = 1e-3});
     CHECK(well_predicted.report.status == SolveStatus::converged);
     CHECK(well_predicted.d(0, 1) == doctest::Approx(5));
 }
