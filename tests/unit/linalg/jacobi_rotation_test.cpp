@@ -22,9 +22,11 @@ TEST_CASE_TEMPLATE("cosine and sine of half the angle, to a few ulp of themselve
         const long double angle = std::atan(static_cast<long double>(twice) / static_cast<long double>(difference)) / 2;
         CAPTURE(difference);
         CAPTURE(twice);
-        CHECK(std::abs(rotation.cosine - std::cos(angle)) <= 2 * epsilon);
-        CHECK(std::abs(rotation.sine - std::sin(angle)) <= 4 * epsilon * std::abs(std::sin(angle)));
-        CHECK(std::abs(rotation.tangent - std::tan(angle)) <= 6 * epsilon * std::abs(std::tan(angle)));
+        CHECK(std::abs(static_cast<long double>(rotation.cosine) - std::cos(angle)) <= 2 * epsilon);
+        CHECK(std::abs(static_cast<long double>(rotation.sine) - std::sin(angle)) <=
+              4 * epsilon * std::abs(std::sin(angle)));
+        CHECK(std::abs(static_cast<long double>(rotation.tangent) - std::tan(angle)) <=
+              6 * epsilon * std::abs(std::tan(angle)));
     }
 }
 

@@ -117,7 +117,7 @@ TEST_CASE("negative curvature is reported") {
 
 TEST_CASE("numbers that leave the range of the scalar do not pass for a solution") {
     RandomGenerator random(5);
-    const BlockMatrix<float> K = chain<float>(0, 0.5F, random);
+    const BlockMatrix<float> K = chain<float>(0, 0.5, random);
     ScalarMetric<float> metric;
     metric.factorize(K, "K");
     MetricCg<ScalarMetric<float>> solver(metric);
