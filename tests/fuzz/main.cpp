@@ -6,6 +6,8 @@
 // runs each target over its seeds and past findings, the files in corpus/<target>.
 #include "target.hpp"
 
+#include <support/temporary_folder.hpp>
+
 #include <softtissue/core/error.hpp>
 
 #include <algorithm>
@@ -23,26 +25,6 @@ namespace softtissue_fuzz {
 
 namespace {
 
-class Folder {
-public:
-    Folder() {
-        int attempt = 0;
-        do {
-            path_ = std::filesystem::temp_directory_path() / ("softtissue_fuzz_" + std::to_string(attempt++));
-        } while (!std::filesystem::create_directory(path_));
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 std::vector<Target> all_targets() {
     std::vector<Target> all;
     for (const std::span<const Target> some : {npz_targets(), json_targets(), text_targets(), agreement_targets()}) {
@@ -58,7 +40,7 @@ bool run(const Target& target, Bytes bytes) {
 }  // namespace
 
 const std::filesystem::path& input_folder() {
-    static const Folder folder;
+    static const softtissue_test::TemporaryFolder folder;
     return folder.path();
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <support/refusal.hpp>
+#include <support/temporary_folder.hpp>
 
 #include <cstring>
 #include <filesystem>
@@ -14,34 +15,6 @@
 #include <vector>
 
 namespace io_test {
-
-/// A new folder, removed with its content at the end.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        int attempt = 0;
-        do {
-            path_ = std::filesystem::temp_directory_path() / ("softtissue_io_test_" + std::to_string(attempt++));
-        } while (!std::filesystem::create_directory(path_));
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-
-    std::size_t num_files() const {
-        return std::size_t(
-            std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 inline std::string read_bytes(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
@@ -53,6 +26,7 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& by
 }
 
 using softtissue_test::refusal;
+using softtissue_test::TemporaryFolder;
 
 inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
