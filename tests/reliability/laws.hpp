@@ -75,4 +75,16 @@ void run_law(Ledger& ledger, const std::string& name, bool recovers, long count,
     run_solves<S>(ledger, kind, block_maker<ElementType, S>(Law()), count, seed);
 }
 
+/// What sampled_laws.cpp tries over neither scalar.
+template <class S>
+void run_unsampled_laws(Ledger& ledger, long count, std::uint64_t seed) {
+    run_law<Tet4, S, NeoHookeanLaw>(ledger, "neo-Hookean", true, count, seed);
+    run_law<Prism6, S, FungLaw>(ledger, "Fung", false, count, seed);
+    run_law<Prism6, S, PolarLaw>(ledger, "polar", false, count, seed);
+    run_law<Tet4, S, ArapLaw>(ledger, "ARAP", false, count, seed);
+    run_law<Prism6, S, ArapLaw>(ledger, "ARAP", false, count, seed);
+    run_law<Tet4, S, GivenRotationLaw>(ledger, "given rotations", true, count, seed);
+    run_law<Prism6, S, GivenRotationLaw>(ledger, "given rotations", true, count, seed);
+}
+
 }  // namespace reliability

@@ -7,14 +7,8 @@ namespace reliability {
 
 void run_more_float_laws(Ledger& ledger, long count, std::uint64_t seed) {
     run_law<Prism6, float, NeoHookeanLaw>(ledger, "neo-Hookean", true, count, seed);
-    run_law<Tet4, float, NeoHookeanLaw>(ledger, "neo-Hookean", true, count, seed);
     run_law<Tet4, float, FungLaw>(ledger, "Fung", false, count, seed);
-    run_law<Prism6, float, FungLaw>(ledger, "Fung", false, count, seed);
-    run_law<Prism6, float, PolarLaw>(ledger, "polar", false, count, seed);
-    run_law<Tet4, float, ArapLaw>(ledger, "ARAP", false, count, seed);
-    run_law<Prism6, float, ArapLaw>(ledger, "ARAP", false, count, seed);
-    run_law<Tet4, float, GivenRotationLaw>(ledger, "given rotations", true, count, seed);
-    run_law<Prism6, float, GivenRotationLaw>(ledger, "given rotations", true, count, seed);
+    run_unsampled_laws<float>(ledger, count, seed);
 }
 
 }  // namespace reliability
