@@ -6,6 +6,7 @@
 #include "retarget_motion/report.hpp"
 #include "support/guarded.hpp"
 #include "support/progress.hpp"
+#include "support/result_file.hpp"
 
 #include <softtissue/io/amass_file.hpp>
 #include <softtissue/io/atomic_file.hpp>
@@ -33,7 +34,7 @@ const std::map<std::string, MotionStyle> styles{{"cmu", MotionStyle::cmu},
 
 int run_program(const Settings& settings) {
     watch_interrupt();
-    static_cast<void>(AtomicFile(settings.out));  // refused now rather than after the work
+    require_writable(settings.out);
     const Body body = read_body(settings.body);
     const bool is_bvh = settings.motion.ends_with(".bvh");
     require(is_bvh || settings.style == "smpl", settings.motion, ": expected a .bvh file for style ", settings.style);

@@ -6,9 +6,9 @@
 #include "../support/layered_report.hpp"
 #include "../support/posing_methods.hpp"
 #include "../support/progress.hpp"
+#include "../support/result_file.hpp"
 #include "inputs.hpp"
 
-#include <softtissue/io/atomic_file.hpp>
 #include <softtissue/ndg/network_input.hpp>
 #include <softtissue/skinning/joint_transforms.hpp>
 
@@ -66,7 +66,7 @@ MatrixX<float> typical_inputs(const NeuralModel<float>& model, const Scene& scen
 
 void animate(const Settings& settings) {
     watch_interrupt();
-    static_cast<void>(AtomicFile(settings.out));  // refused now rather than after the work
+    require_writable(settings.out);
     const NeuralModel<float> model = read_model(settings.model);
     const Scene scene = make_scene(
         settings.files, Eigen::Map<const VectorX<Scalar>>(settings.betas.data(), Index(settings.betas.size())));

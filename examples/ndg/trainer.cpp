@@ -2,6 +2,7 @@
 #include "trainer.hpp"
 
 #include "../support/progress.hpp"
+#include "../support/result_file.hpp"
 #include "training_data.hpp"
 #include "training_results.hpp"
 #include "training_run.hpp"
@@ -38,7 +39,7 @@ public:
 
     void run() {
         for (const std::string& file : {settings_.out, settings_.json, settings_.png}) {
-            static_cast<void>(AtomicFile(file));  // refused now rather than after the training
+            require_writable(file);
         }
         load();
         Mlp<float> mlp =
