@@ -81,6 +81,7 @@
 #include <softtissue/linalg/completed_basis.hpp>
 #include <softtissue/linalg/cubic_roots.hpp>
 #include <softtissue/linalg/dual_basis.hpp>
+#include <softtissue/linalg/eigen_deflation3.hpp>
 #include <softtissue/linalg/jacobi_rotation.hpp>
 #include <softtissue/linalg/leading_directions.hpp>
 #include <softtissue/linalg/matrix3_entries.hpp>

@@ -4,7 +4,7 @@
 ///
 /// What        PsdFilter {none, clamp, absolute}; filtered(H, filter) by a numeric eigen-decomposition
 /// Equation    H = sum_k l_k v_k v_k^T  ->  sum_k f(l_k) v_k v_k^T;  clamp: f(l) = max(l, 0), absolute: f(l) = |l|
-/// Shapes      H: N x N, N fixed.  Only the lower triangle is read; the result is exactly symmetric.
+/// Shapes      H: N x N, N > 1 fixed.  Only the lower triangle is read; the result is exactly symmetric.
 /// Valid       every finite H.  A matrix that holds NaN or infinity stays non-finite, nothing is thrown.
 ///             Packs: no lane depends on the others.
 /// Source      clamp: Teran et al. 2005; absolute: Chen et al. 2024, "Stabler Neo-Hookean Simulation"
@@ -64,7 +64,7 @@ auto is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
 
 /// H with its negative eigenvalues filtered; H itself where there are none (or `filter` is none).
 template <RealLanes Scalar, int N>
-    requires(N > 0)
+    requires(N > 1)
 Eigen::Matrix<Scalar, N, N> filtered(const Eigen::Matrix<Scalar, N, N>& H, PsdFilter filter) {
     using Matrix = Eigen::Matrix<Scalar, N, N>;
     Matrix result;

@@ -6,7 +6,7 @@
 /// Equation    reflections I - b v v^T make A tridiagonal; QL steps with Wilkinson's shift make that diagonal
 /// Shapes      A: N x N, of which the lower triangle is read; values: N
 /// Valid       entries at most 1 in size; what the form has below the diagonal counts as zero where it is below epsilon^2
-/// Accuracy    a few epsilon |A|, for small eigenvalues too: not relative to each, as by Jacobi rotations (symmetric_eigen.hpp)
+/// Accuracy    a few epsilon |A|, for small eigenvalues too: not relative to each, as by Jacobi rotations
 /// Packs       a lane whose eigenvalue is found stands still while others go on, so that it never depends on them
 /// Source      Golub & Van Loan 2013, sec. 8.3; the step: Martin, Wilkinson 1968, "The Implicit QL Algorithm"
 /// Cost        4/3 N^3 multiply-adds for the form, as many for its vectors, about 2 N^2 rotations of N entries: a third of Jacobi's

@@ -68,7 +68,9 @@ void check(const Square<Scalar, N>& H) {
 TEST_CASE_TEMPLATE("random symmetric matrices are decomposed", Scalar, float, double) {
     RandomGenerator random(1);
     for (int sample = 0; sample < 200; ++sample) {
+        check<Scalar, 2>(random_symmetric<Scalar, 2>(random));
         check<Scalar, 3>(random_symmetric<Scalar, 3>(random));
+        check<Scalar, 4>(random_symmetric<Scalar, 4>(random));
         check<Scalar, 9>(random_symmetric<Scalar, 9>(random));
     }
 }
@@ -92,10 +94,6 @@ TEST_CASE_TEMPLATE("special matrices", Scalar, float, double) {
     check<Scalar, 3>(Square<Scalar, 3>::Identity());
     check<Scalar, 3>(Square<Scalar, 3>::Ones());
     check<Scalar, 3>(Square<Scalar, 3>(Vector3<Scalar>(3, -1, 2).asDiagonal()));
-    const SymmetricEigen<Scalar, 3> diagonal =
-        symmetric_eigen<Scalar, 3>(Square<Scalar, 3>(Vector3<Scalar>(3, -1, 2).asDiagonal()));
-    CHECK(diagonal.values == Vector3<Scalar>(3, -1, 2));
-    CHECK(diagonal.vectors == Square<Scalar, 3>::Identity());
     // sizes whose squares leave the range
     const Scalar huge = std::sqrt(std::numeric_limits<Scalar>::max());
     check<Scalar, 3>(huge * Square<Scalar, 3>::Ones());
@@ -112,18 +110,6 @@ TEST_CASE_TEMPLATE("only the lower triangle is read", Scalar, float, double) {
     const SymmetricEigen<Scalar, 9> a = symmetric_eigen<Scalar, 9>(H), b = symmetric_eigen<Scalar, 9>(lower);
     CHECK(a.values == b.values);
     CHECK(a.vectors == b.vectors);
-}
-
-TEST_CASE("small eigenvalues of a graded matrix keep their relative accuracy") {
-    // D (I + 0.1 (11^T - I)) D, D = diag(1, 1e-6, 1e-12): eigenvalues of about 1, 1e-12, 1e-24
-    const Vector3<double> D(1, 1e-6, 1e-12);
-    Square<double, 3> C = Square<double, 3>::Constant(0.1);
-    C.diagonal().setOnes();
-    Vector3<double> values = symmetric_eigen<double, 3>(D.asDiagonal() * C * D.asDiagonal()).values;
-    std::sort(values.data(), values.data() + 3);
-    // the smallest is det(C) / det of the leading 2x2 block of C, times 1e-24, up to a relative 1e-12
-    const double expected = C.determinant() / (1 - 0.01) * 1e-24;
-    CHECK(std::abs(values(0) / expected - 1) < 1e-10);
 }
 
 TEST_CASE_TEMPLATE("what is not finite gives NaN throughout, and leaves its neighbours in a pack alone", Scalar, float,
