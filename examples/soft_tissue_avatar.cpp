@@ -46,6 +46,7 @@ Scene make_scene(const Settings& settings) {
         body = std::move(character.body);
         recorded = std::move(character.motion);
         options.region.extremities = std::move(character.extremities);
+        options.region.excluded_vertices = std::move(character.hole_centers);
     } else {
         body = read_human(settings.body);
         recorded = read_human_motion(settings.motion, body.num_joints());

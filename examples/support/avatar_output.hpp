@@ -290,7 +290,7 @@ private:
     }
 
     void write_contact_sheet(const std::filesystem::path& path) {
-        constexpr int panel_width = 250, panel_height = 400, margin = 60, legend_width = 120, row_gap = 60;
+        constexpr int panel_width = 250, panel_height = 400, margin = 60, legend_width = 150, row_gap = 60;
         const std::vector<const Frame*> selected = selected_frames();
         const View view(-0.5, 0.12);
         Picture picture(margin + panel_width * int(selected.size()) + legend_width,
@@ -307,7 +307,7 @@ private:
             picture.mesh(frame.simulated.cast<double>(), body_.faces, displacement_colors(frame, top), view, center,
                          scale, x, margin + panel_height + row_gap, panel_width, panel_height);
             char caption[64];
-            std::snprintf(caption, sizeof caption, "%.2f s,  %.1f mm", frame.time, 1e3 * frame.largest);
+            std::snprintf(caption, sizeof caption, "%.2f s,  %.3g mm", frame.time, 1e3 * frame.largest);
             picture.text(caption, x + 0.5 * panel_width, 2 * panel_height + row_gap + margin + 34, 17, 0.5);
         }
         picture.text("skinned", margin, margin - 24, 22);

@@ -8,7 +8,9 @@
 #include <softtissue/skinning/motion.hpp>
 #include <softtissue/skinning/smpl_body.hpp>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace examples {
 
@@ -22,6 +24,7 @@ struct CharacterScene {
     softtissue::SmplBody<double> body;
     softtissue::Motion<double> motion;
     softtissue::JointGroups extremities;
+    std::vector<std::int32_t> hole_centers;  ///< vertices that carry no tissue
 };
 
 /// Whether the name is that of a glTF file.

@@ -144,6 +144,7 @@ void gltf(Bytes bytes) {
     const std::filesystem::path path = input_file("input.glb", bytes);
     is_accepted([&] { read_accessors(path); });
     is_accepted([&] { use(read_gltf_character(path, {.weld = false})); });
+    is_accepted([&] { use(read_gltf_character(path, {.fill_holes = true})); });
     use(read_gltf_character(path));
 }
 

@@ -3,13 +3,13 @@
 /// A rigged character as a body of rigid bones: what avatars and layered bodies are made of.
 ///
 /// What        body(): surface, tree, weights and joints in SMPL's form, morph targets as shapes, no pose blend shapes;
-///             motion(): a clip as local rotations and the translation of the root.
+///             motion(): a clip as local rotations and the translation of the root; bone_change(): what is lost by that.
 /// Joints      those that move vertices, those between them, and joints at the ends of moving bones. The first is the root. What
 ///             lies above (a node that only places the character) is not needed: its motion becomes that of the root. Without
 ///             one joint above all others the first one takes the others as children.
 /// Equation    R_j = Q_parent^T Q_j with the rotation Q_j of the joint's transform T_j; translation = T_root c - c
-/// Valid       rigid bones: rotation up to largest_stretch, joints up to largest_shift of the longest bone away from where their
-///             parent puts them. Joints that move no vertices may do as they like.
+/// Valid       nearly rigid bones, which become rigid: rotation up to largest_stretch, joints up to largest_shift of the longest
+///             bone away from where their parent puts them. Joints that move no vertices may do as they like.
 /// Refuses     clips that scale, shear or pull bones, joints without extent of the surface around (InvalidInput names joint, clip,
 ///             time), a frame rate that is not positive
 /// Source      Loper et al. 2015 (SMPL), for the form
@@ -41,10 +41,17 @@
 
 namespace softtissue {
 
+/// How far a clip changes bones that move skin, at most: what motion() leaves out.
+struct BoneChange {
+    double stretch = 0.0;  ///< relative
+    double shift = 0.0;    ///< [m] of a joint from where its parent puts it
+    std::string shifted_joint = {};
+};
+
 class CharacterRig {
 public:
-    static constexpr double largest_stretch = 0.02;
-    static constexpr double largest_shift = 0.01;
+    static constexpr double largest_stretch = 0.05;
+    static constexpr double largest_shift = 0.05;
 
     /// `character` must outlive the rig.
     explicit CharacterRig(const GltfCharacter& character) : character_(&character) { choose_joints(); }
@@ -103,7 +110,7 @@ public:
     }
 
     /// The clip as often as its densest track has keys, but 30 to 240 times a second.
-    Motion<double> motion(const GltfClip& clip) const { return motion(clip, std::clamp(clip.key_rate(), 30.0, 240.0)); }
+    Motion<double> motion(const GltfClip& clip) const { return motion(clip, default_frame_rate(clip)); }
 
     Pose<double> pose(const GltfClip& clip, double time) const {
         const std::vector<AffineTransform<double>> T = character_->joint_transforms(clip, time);
@@ -116,7 +123,7 @@ public:
                        clip.name + "' at " + std::to_string(time) + " s";
             };
             Q[j] = polar_rotation(own.linear);
-            const double stretch = (own.linear - Q[j]).cwiseAbs().maxCoeff();
+            const double stretch = stretch_of(own, Q[j]);
             require(!moves_skin_[j] || stretch <= largest_stretch, place(), ": the bone is scaled or sheared by ",
                     stretch, ", expected at most ", largest_stretch, " (rigid bones)");
             const std::int32_t parent = tree_.parent(Index(j));
@@ -126,7 +133,7 @@ public:
                 pose.translation = own(c) - c;
                 continue;
             }
-            const double shift = (own(c) - T[size_t(joints_[size_t(parent)])](c)).norm();
+            const double shift = shift_of(T, j);
             require(!moves_skin_[j] || shift <= largest_shift * longest_bone_, place(), ": is ", shift,
                     " m from where its parent puts it, expected at most ", largest_shift * longest_bone_,
                     " (rigid bones)");
@@ -136,7 +143,45 @@ public:
         return pose;
     }
 
+    /// At the times of motion(clip).
+    BoneChange bone_change(const GltfClip& clip) const {
+        const double frame_rate = default_frame_rate(clip);
+        BoneChange largest;
+        for (double k = 0.0; k <= clip.duration() * frame_rate + 1e-6; k += 1.0) {
+            const std::vector<AffineTransform<double>> T =
+                character_->joint_transforms(clip, clip.start + k / frame_rate);
+            for (size_t j = 0; j < joints_.size(); ++j) {
+                const AffineTransform<double>& own = T[size_t(joints_[j])];
+                const double shift = moves_skin_[j] ? shift_of(T, j) : 0.0;
+                if (shift > largest.shift) {
+                    largest.shift = shift;
+                    largest.shifted_joint = character_->joint_names[size_t(joints_[j])];
+                }
+                if (moves_skin_[j]) {
+                    largest.stretch = std::max(largest.stretch, stretch_of(own, polar_rotation(own.linear)));
+                }
+            }
+        }
+        return largest;
+    }
+
 private:
+    static double default_frame_rate(const GltfClip& clip) { return std::clamp(clip.key_rate(), 30.0, 240.0); }
+
+    static double stretch_of(const AffineTransform<double>& transform, const Matrix3<double>& rotation) {
+        return (transform.linear - rotation).cwiseAbs().maxCoeff();
+    }
+
+    /// How far joint `j` is from where its parent puts it; 0 for the root.
+    double shift_of(const std::vector<AffineTransform<double>>& T, size_t j) const {
+        const std::int32_t parent = tree_.parent(Index(j));
+        if (parent == KinematicTree::no_parent) {
+            return 0.0;
+        }
+        const Vector3<double> c = rest_.col(Index(j));
+        return (T[size_t(joints_[j])](c) - T[size_t(joints_[size_t(parent)])](c)).norm();
+    }
+
     void choose_joints() {
         const GltfCharacter& c = *character_;
         constexpr std::int32_t none = -1;

@@ -19,6 +19,7 @@
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/io/gltf_clip.hpp>
+#include <softtissue/io/gltf_repairs.hpp>
 #include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/skinning/affine_transform.hpp>
 #include <softtissue/skinning/weights.hpp>
@@ -65,7 +66,8 @@ struct GltfCharacter {
     std::vector<std::int32_t> node_order;  ///< all nodes, each after its parent
     std::vector<GltfClip> clips;
     std::vector<std::int32_t> welded_vertex;  ///< of each vertex in the file
-    Index lost_triangles = 0;                 ///< had two corners at one place
+    std::vector<std::int32_t> hole_centers;   ///< vertices that are not in the file (gltf_hole_filling.hpp)
+    GltfRepairs repairs;
 
     Index num_vertices() const { return positions.cols(); }
     Index num_joints() const { return static_cast<Index>(joint_nodes.size()); }

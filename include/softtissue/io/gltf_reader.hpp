@@ -20,7 +20,9 @@
 #include <softtissue/io/gltf_character.hpp>
 #include <softtissue/io/gltf_clip.hpp>
 #include <softtissue/io/gltf_document.hpp>
+#include <softtissue/io/gltf_hole_filling.hpp>
 #include <softtissue/io/gltf_surface.hpp>
+#include <softtissue/io/gltf_welding.hpp>
 #include <softtissue/io/json_element.hpp>
 #include <softtissue/linalg/cofactor.hpp>
 #include <softtissue/linalg/quaternion.hpp>
@@ -41,6 +43,7 @@ namespace softtissue {
 struct GltfReadOptions {
     std::string mesh = {};  ///< name of the skinned mesh or its node; empty: the only one
     bool weld = true;
+    bool fill_holes = false;  ///< gltf_hole_filling.hpp; needs weld
 };
 
 namespace detail {
@@ -227,12 +230,17 @@ inline GltfCharacter read_gltf_character(const std::filesystem::path& path, cons
     if (options.weld) {
         surface = welded_surface(surface, character.source);
     }
+    require(options.weld || !options.fill_holes, character.source, ": holes are filled in a welded surface only");
+    if (options.fill_holes) {
+        surface = filled_surface(std::move(surface), character.source);
+    }
     character.positions = std::move(surface.positions);
     character.triangles = std::move(surface.triangles);
     character.weights = SkinningWeights<double>(character.num_joints(), surface.weights);
     character.morph_targets = std::move(surface.morph_targets);
     character.welded_vertex = std::move(surface.welded_vertex);
-    character.lost_triangles = surface.lost_triangles;
+    character.hole_centers = std::move(surface.hole_centers);
+    character.repairs = surface.repairs;
     detail::read_morphs(node, mesh, character);
     character.clips = read_gltf_clips(document);
     detail::move_rest_into_scene(document.file(), character);

@@ -2,16 +2,12 @@
 /// @file
 /// The mesh of a glTF file as one surface: triangles, skinning weights and morph targets of all its parts together.
 ///
-/// What        read_gltf_surface(): the primitives of a mesh one after the other, as they are in the file;
-///             welded_surface(): vertices at the same place made one, as files store a vertex several times where the texture or
-///             the normal jumps. Triangles that lose a corner by that are left out and counted.
+/// What        read_gltf_surface(): the primitives of a mesh one after the other, as they are in the file.
 /// Shapes      positions 3 x n, triangles 3 x m, weights one row per vertex, morph targets 3 x n each.
 /// Parts       triangles, strips and fans; with or without indices; any number of JOINTS_k and WEIGHTS_k.
-/// Weights     as stored they must sum to one, within 1e-3 for floats and half a step per entry for integers; then they are
-///             normalised.
-/// Refuses     no triangles, an index or a joint out of range, arrays of different lengths, weights that are negative or do not
-///             sum to one, other kinds of parts, vertices at one place that different joints move (InvalidInput names file,
-///             element and vertex).
+/// Weights     normalised; a sum within 1e-3 (floats) or half a step per entry (integers) of one is rounding and not counted
+/// Refuses     no triangles, an index or a joint out of range, arrays of different lengths, weights that are negative or all
+///             zero, other kinds of parts (InvalidInput names file, element and vertex).
 /// Source      Khronos Group, "glTF 2.0 Specification", sec. 3.7
 /// Tests       tests/unit/io/gltf_surface_test.cpp
 #pragma once
@@ -19,6 +15,7 @@
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/io/gltf_document.hpp>
+#include <softtissue/io/gltf_repairs.hpp>
 #include <softtissue/io/json_element.hpp>
 #include <softtissue/skinning/weights.hpp>
 
@@ -41,9 +38,26 @@ struct GltfSurface {
     Triangles triangles;
     std::vector<std::vector<JointWeight<double>>> weights;  ///< per vertex, joints of the skin ascending
     std::vector<Matrix3X<double>> morph_targets;            ///< offsets
-    std::vector<std::int32_t> welded_vertex;                ///< of each vertex in the file, in the order of the parts
-    Index lost_triangles = 0;                               ///< left out by welded_surface()
+    std::vector<std::int32_t>
+        welded_vertex;  ///< of each vertex in the file, in the order of the parts (gltf_welding.hpp)
+    std::vector<std::int32_t> hole_centers;  ///< vertices that are not in the file (gltf_hole_filling.hpp)
+    GltfRepairs repairs;
 };
+
+/// The mean of the weights of some vertices, joints ascending.
+inline std::vector<JointWeight<double>> mean_weights(const GltfSurface& surface, const std::vector<Index>& vertices) {
+    std::map<std::int32_t, double> mean;
+    for (const Index v : vertices) {
+        for (const auto& [joint, weight] : surface.weights[static_cast<std::size_t>(v)]) {
+            mean[joint] += weight / double(vertices.size());
+        }
+    }
+    std::vector<JointWeight<double>> row;
+    for (const auto& [joint, weight] : mean) {
+        row.push_back({joint, weight});
+    }
+    return row;
+}
 
 namespace detail {
 
@@ -122,7 +136,7 @@ inline double append_weight_set(GltfDocument& document, const JsonElement& attri
 
 /// Ascending joints, each once, normalised.
 inline void finish_weights(std::vector<JointWeight<double>>& row, double tolerance, const std::string& part,
-                           Index vertex) {
+                           Index vertex, GltfRepairs& repairs) {
     std::sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.joint < b.joint; });
     std::vector<JointWeight<double>> joined;
     double sum = 0.0;
@@ -134,7 +148,10 @@ inline void finish_weights(std::vector<JointWeight<double>>& row, double toleran
             joined.push_back({joint, weight});
         }
     }
-    require(std::abs(sum - 1.0) <= tolerance, part, ": weights of vertex ", vertex, " sum to ", sum, ", expected 1");
+    require(sum > 0.0, part, ": weights of vertex ", vertex, " are all zero, expected a sum of 1");
+    if (std::abs(sum - 1.0) > tolerance) {
+        repairs.count_rescaled(std::abs(sum - 1.0));
+    }
     for (auto& entry : joined) {
         entry.weight /= sum;
     }
@@ -147,6 +164,7 @@ struct SurfaceParts {
     std::vector<std::int32_t> corners;
     std::vector<std::vector<JointWeight<double>>> weights;
     std::vector<std::vector<double>> morph_targets;
+    GltfRepairs repairs;
 };
 
 inline void append_columns(const MatrixX<double>& columns, std::vector<double>& numbers) {
@@ -167,7 +185,7 @@ inline void append_part(GltfDocument& document, const JsonElement& part, Index n
         tolerance += append_weight_set(document, attributes, set, n, num_joints, parts.weights.data() + first);
     }
     for (Index v = 0; v < n; ++v) {
-        finish_weights(parts.weights[first + static_cast<std::size_t>(v)], tolerance, part.name(), v);
+        finish_weights(parts.weights[first + static_cast<std::size_t>(v)], tolerance, part.name(), v, parts.repairs);
     }
     const std::vector<JsonElement> targets = part.items("targets");
     require(targets.size() == parts.morph_targets.size(), part.name(), ": has ", targets.size(),
@@ -205,73 +223,13 @@ inline GltfSurface read_gltf_surface(GltfDocument& document, const JsonElement& 
     surface.positions = detail::as_columns(parts.positions);
     surface.triangles = Eigen::Map<const Triangles>(parts.corners.data(), 3, Index(parts.corners.size() / 3));
     surface.weights = std::move(parts.weights);
+    surface.repairs = parts.repairs;
     for (const std::vector<double>& target : parts.morph_targets) {
         surface.morph_targets.push_back(detail::as_columns(target));
     }
     surface.welded_vertex.resize(surface.weights.size());
     std::iota(surface.welded_vertex.begin(), surface.welded_vertex.end(), 0);
     return surface;
-}
-
-/// The surface with one vertex at each place; `source` starts messages.
-inline GltfSurface welded_surface(const GltfSurface& surface, const std::string& source) {
-    GltfSurface welded;
-    std::map<std::array<double, 3>, std::int32_t> vertex_at;
-    std::vector<Index> origin;
-    for (Index v = 0; v < surface.positions.cols(); ++v) {
-        std::array<double, 3> place{};
-        for (std::size_t d = 0; d < 3; ++d) {
-            place[d] = surface.positions(static_cast<Index>(d), v) + 0.0;  // -0 is 0
-        }
-        const auto [found, is_new] = vertex_at.emplace(place, static_cast<std::int32_t>(origin.size()));
-        welded.welded_vertex.push_back(found->second);
-        const auto& row = surface.weights[static_cast<std::size_t>(v)];
-        if (is_new) {
-            origin.push_back(v);
-            welded.weights.push_back(row);
-            continue;
-        }
-        double difference = 0.0;
-        std::map<std::int32_t, double> weights;
-        for (const auto& [joint, weight] : row) {
-            weights[joint] += weight;
-        }
-        for (const auto& [joint, weight] : welded.weights[static_cast<std::size_t>(found->second)]) {
-            weights[joint] -= weight;
-        }
-        for (const auto& [joint, weight] : weights) {
-            difference = std::max(difference, std::abs(weight));
-        }
-        require(difference <= 0.02, source, ": vertices ", origin[static_cast<std::size_t>(found->second)], " and ", v,
-                " lie at the same place, but their weights differ by ", difference, ", expected the same");
-    }
-    const auto picked = [&](const Matrix3X<double>& columns) {
-        Matrix3X<double> result(3, static_cast<Index>(origin.size()));
-        for (Index i = 0; i < result.cols(); ++i) {
-            result.col(i) = columns.col(origin[static_cast<std::size_t>(i)]);
-        }
-        return result;
-    };
-    welded.positions = picked(surface.positions);
-    for (const Matrix3X<double>& target : surface.morph_targets) {
-        welded.morph_targets.push_back(picked(target));
-    }
-    std::vector<std::int32_t> corners;
-    for (Index t = 0; t < surface.triangles.cols(); ++t) {
-        std::array<std::int32_t, 3> c{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            c[k] = welded.welded_vertex[static_cast<std::size_t>(surface.triangles(static_cast<Index>(k), t))];
-        }
-        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) {
-            ++welded.lost_triangles;
-        } else {
-            corners.insert(corners.end(), c.begin(), c.end());
-        }
-    }
-    require(!corners.empty(), source, ": all ", surface.triangles.cols(),
-            " triangles have two corners at one place, expected a surface");
-    welded.triangles = Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Index>(corners.size() / 3));
-    return welded;
 }
 
 }  // namespace softtissue

@@ -110,7 +110,7 @@ TEST_CASE("vertices are welded unless that is not wanted") {
     positions[3 * 13] = positions[3 * 14] = positions[3 * 15] = 20.0F;
     attributes["POSITION"] = file.add(positions, "VEC3");
     CHECK(read(folder, file).num_vertices() == 14);
-    CHECK(read(folder, file).lost_triangles > 0);
+    CHECK(read(folder, file).repairs.lost_triangles > 0);
     CHECK(read(folder, file, {.weld = false}).num_vertices() == 16);
 }
 

@@ -104,10 +104,8 @@ TEST_CASE("arrays that do not fit are refused") {
     };
     std::vector<float> weights(64, 0.0F);
     CHECK(contains(with_attribute("WEIGHTS_0", weights, "VEC4"),
-                   "a.glb: meshes[0].primitives[0]: weights of vertex 0 sum to 0, expected 1"));
+                   "a.glb: meshes[0].primitives[0]: weights of vertex 0 are all zero, expected a sum of 1"));
     weights.assign(64, 0.25F);
-    weights[21] = 0.3F;
-    CHECK(contains(with_attribute("WEIGHTS_0", weights, "VEC4"), "weights of vertex 5 sum to 1.05"));
     weights[21] = -0.25F;
     CHECK(contains(with_attribute("WEIGHTS_0", weights, "VEC4"),
                    "WEIGHTS_0: weight 1 of vertex 5 = -0.25, expected >= 0"));
@@ -152,32 +150,4 @@ TEST_CASE("many targets that say nothing are counted like those with numbers") {
         part_of(file)["targets"].push_back(nlohmann::json::object());
     }
     CHECK(contains(refusal([&] { read(folder, file); }), "numbers would make more than 64 bytes for every byte"));
-}
-
-TEST_CASE("vertices at one place become one") {
-    const TemporaryFolder folder;
-    const GltfSurface bar = read(folder, rigged_bar());
-    GltfSurface doubled = bar;
-    doubled.positions.resize(3, 32);
-    doubled.positions << bar.positions, bar.positions;
-    doubled.positions = doubled.positions.unaryExpr([](double x) { return x == 0.0 ? -0.0 : x; }).eval();
-    doubled.triangles.rightCols(14).array() += 16;
-    doubled.weights.insert(doubled.weights.end(), bar.weights.begin(), bar.weights.end());
-    doubled.morph_targets[0].resize(3, 32);
-    doubled.morph_targets[0] << bar.morph_targets[0], bar.morph_targets[0];
-    doubled.triangles.col(0) = Eigen::Vector3i(1, 17, 2);  // two corners at one place
-    const GltfSurface welded = welded_surface(doubled, "x");
-    CHECK(welded.positions == bar.positions);
-    CHECK(welded.morph_targets[0] == bar.morph_targets[0]);
-    CHECK(welded.lost_triangles == 1);
-    CHECK(welded.triangles == bar.triangles.rightCols(27));
-    CHECK(welded.welded_vertex[20] == 4);
-    GltfSurface point = bar;
-    point.positions.setZero();
-    point.weights.assign(16, {{0, 1.0}});
-    CHECK(contains(refusal([&] { welded_surface(point, "x"); }),
-                   "x: all 28 triangles have two corners at one place, expected a surface"));
-    doubled.weights[20] = {{2, 1.0}};
-    CHECK(contains(refusal([&] { welded_surface(doubled, "x"); }),
-                   "x: vertices 4 and 20 lie at the same place, but their weights differ by 1, expected the same"));
 }
