@@ -224,6 +224,7 @@
 #include <softtissue/solver/gradient_skinning.hpp>
 #include <softtissue/solver/implicit_euler.hpp>
 #include <softtissue/solver/limited_memory_bfgs.hpp>
+#include <softtissue/solver/line_search.hpp>
 #include <softtissue/solver/local_global.hpp>
 #include <softtissue/solver/metric_cg.hpp>
 #include <softtissue/solver/newton.hpp>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// Newton's method with a backtracking line search, exact where the Hessian is positive definite, filtered where not.
+/// Newton's method with a line search, exact where the Hessian is positive definite, filtered where not.
 ///
 /// What        minimises an Objective over the free vertices, in place.
 /// Method      each iteration tries the exact Hessian first; if it is indefinite, the one filtered per stencil. Far from the
 ///             minimum the trial is wasted: after a step longer than far_step, and filtered_after_failure times after an
-///             indefinite Hessian, it is left out. Halving line search on the energy (Armijo), full step first. Never
-///             increases the energy beyond its round-off.
+///             indefinite Hessian, it is left out. Full step first, shortened until the energy decreases, lengthened where it
+///             falls like an exponential (line_search.hpp). Never increases the energy beyond its round-off.
 ///             Between two iterations up to quasi_newton_steps steps reuse the last Hessian, corrected by what recent steps told
 ///             about the curvature (limited_memory_bfgs.hpp), while each gains a twentieth of the iteration's decrease.
 /// Stops       step_tolerance: largest component of an exact Newton step, which is then applied (error ~ its square);
@@ -24,6 +24,7 @@
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/linalg/psd_filter.hpp>
 #include <softtissue/solver/concepts.hpp>
+#include <softtissue/solver/line_search.hpp>
 #include <softtissue/solver/newton_workspace.hpp>
 #include <softtissue/solver/report.hpp>
 
@@ -45,7 +46,8 @@ struct NewtonOptions {
     bool adapts_filter = false;
     S far_step = std::numeric_limits<S>::infinity();  ///< [m]; infinity: the exact Hessian is always tried
     int filtered_after_failure = 0;
-    int max_halvings = 40;
+    int max_halvings = LineSearchOptions{}.max_halvings;    ///< of a step that does not decrease the energy
+    int max_doublings = LineSearchOptions{}.max_doublings;  ///< of one that decreases it like an exponential
     int quasi_newton_steps = 0;  ///< after each iteration, where the linear solver keeps its factor
 };
 
@@ -69,7 +71,7 @@ public:
     }
 
     SolveReport<Scalar> run() {
-        report_.energy = energy_and_gradient_at(d_);
+        report_.energy = energy_at(d_, has_both);
         refresh_gradient();
         w_.last_gradient = w_.trial_gradient = w_.gradient;  // room for the next ones
         if (!std::isfinite(report_.energy) || !std::isfinite(report_.residual)) {
@@ -93,9 +95,9 @@ public:
             const Scalar last_energy = report_.energy;
             const Scalar step = w_.direction.cwiseAbs().maxCoeff();
             report_.decrement = -w_.gradient.dot(w_.direction) / Scalar(2);
-            const StepOutcome outcome = take_step();
+            const LineSearchOutcome outcome = take_step();
             const bool is_small = step <= options_.step_tolerance || report_.decrement <= options_.decrement_tolerance;
-            if (outcome == StepOutcome::none) {
+            if (outcome == LineSearchOutcome::none) {
                 // the step that would end the solve is lost in the rounding of the energy
                 const bool is_there = is_small && hessian_ == HessianKind::exact;
                 return ended(is_there ? SolveStatus::precision_limit : SolveStatus::line_search_stalled);
@@ -108,7 +110,7 @@ public:
             if (step <= options_.step_tolerance && hessian_ == HessianKind::indefinite) {
                 return ended(SolveStatus::saddle_point);
             }
-            if (outcome == StepOutcome::below_resolution && !(report_.residual < last_residual)) {
+            if (outcome == LineSearchOutcome::below_resolution && !(report_.residual < last_residual)) {
                 return ended(SolveStatus::precision_limit);
             }
             plan_next(is_small);
@@ -119,32 +121,29 @@ public:
     }
 
 private:
-    enum class StepOutcome { decreased, below_resolution, none };
     /// Of the last direction: filtered without a trial of the exact one, or after that was found indefinite.
     enum class HessianKind { exact, indefinite, filtered };
+    /// Energy and gradient cost less together than one after the other.
+    static constexpr bool has_both = requires(ObjectiveType & f, Matrix3X<Scalar>& d, VectorX<Scalar>& gradient) {
+        f.energy_and_gradient(d, gradient);
+    };
 
     SolveReport<Scalar> ended(SolveStatus status) {
         report_.status = status;
         return report_;
     }
 
-    Scalar energy_at(const Matrix3X<Scalar>& d) {
+    Scalar energy_at(const Matrix3X<Scalar>& d, bool with_gradient) {
         ++report_.energy_evaluations;
-        has_trial_gradient_ = false;
+        if constexpr (has_both) {
+            if (with_gradient) {
+                return objective_.energy_and_gradient(d, w_.trial_gradient);
+            }
+        }
         return objective_.energy(d);
     }
 
-    /// With the gradient, where the objective has both for less than one after the other.
-    Scalar energy_and_gradient_at(const Matrix3X<Scalar>& d) {
-        if constexpr (requires { objective_.energy_and_gradient(d, w_.trial_gradient); }) {
-            ++report_.energy_evaluations;
-            has_trial_gradient_ = true;
-            return objective_.energy_and_gradient(d, w_.trial_gradient);
-        }
-        return energy_at(d);
-    }
-
-    /// At d, where the energy was evaluated last.
+    /// At d.
     void refresh_gradient() {
         w_.last_gradient.swap(w_.gradient);
         if (has_trial_gradient_) {
@@ -219,7 +218,7 @@ private:
                 return;
             }
             decrease = report_.energy;
-            if (take_step() != StepOutcome::decreased) {
+            if (take_step() != LineSearchOutcome::decreased) {
                 return;
             }
             decrease -= report_.energy;
@@ -229,31 +228,33 @@ private:
         }
     }
 
-    /// The energy is a sum over many cells: differences below this are noise.
-    Scalar energy_resolution() const {
-        return Scalar(32) * std::numeric_limits<Scalar>::epsilon() * std::abs(report_.energy);
+    void set_trial(Scalar length) {
+        w_.trial = d_;
+        objective_.prescribed().add_into(w_.direction, length, w_.trial);
     }
 
-    StepOutcome take_step() {
-        const Scalar slope = w_.gradient.dot(w_.direction);
-        const Scalar sufficient_decrease = Scalar(1e-4);
-        Scalar length(1);
-        for (int halving = 0; halving <= options_.max_halvings; ++halving, length *= Scalar(0.5)) {
-            w_.trial = d_;
-            objective_.prescribed().add_into(w_.direction, length, w_.trial);
-            const Scalar energy = halving == 0 ? energy_and_gradient_at(w_.trial) : energy_at(w_.trial);
-            const bool is_resolved = -length * slope > energy_resolution();
-            if (energy <= report_.energy + sufficient_decrease * length * slope +
-                              (is_resolved ? Scalar(0) : energy_resolution())) {
-                d_.swap(w_.trial);
-                predicted_ratio_ = (energy - report_.energy) / (slope * (length - length * length / Scalar(2)));
-                report_.energy = energy;
-                length_ = length;
-                report_.step = length * w_.direction.cwiseAbs().maxCoeff();
-                return is_resolved ? StepOutcome::decreased : StepOutcome::below_resolution;
-            }
+    LineSearchOutcome take_step() {
+        Scalar tried(0);
+        const auto trial_energy = [&](Scalar length) {
+            set_trial(tried = length);
+            return energy_at(w_.trial, length == Scalar(1));
+        };
+        const LineSearchResult<Scalar> found =
+            search_line(trial_energy, report_.energy, w_.gradient.dot(w_.direction),
+                        {.max_halvings = options_.max_halvings, .max_doublings = options_.max_doublings});
+        if (found.outcome == LineSearchOutcome::none) {
+            return found.outcome;
         }
-        return StepOutcome::none;
+        if (tried != found.length) {
+            set_trial(found.length);
+        }
+        d_.swap(w_.trial);
+        has_trial_gradient_ = has_both && found.length == Scalar(1);
+        predicted_ratio_ = found.predicted_ratio;
+        report_.energy = found.energy;
+        length_ = found.length;
+        report_.step = length_ * w_.direction.cwiseAbs().maxCoeff();
+        return found.outcome;
     }
 
     ObjectiveType& objective_;
@@ -267,7 +268,7 @@ private:
     int filtered_ahead_ = std::isfinite(options_.far_step) ? 1 : 0;
     Scalar predicted_ratio_ = Scalar(0);  // actual over predicted decrease of the last step
     Scalar length_ = Scalar(0);           // of the last step, in directions
-    bool has_trial_gradient_ = false;
+    bool has_trial_gradient_ = has_both;  // at d_
     NewtonWorkspace<Scalar>& w_;
 };
 

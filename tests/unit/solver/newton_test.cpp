@@ -41,6 +41,14 @@ struct LongTailed {
     S second(S x) const { return S(2) * (S(1) - x * x) / ((S(1) + x * x) * (S(1) + x * x)); }
 };
 
+/// exp(x^2): each Newton step lowers the exponent by one.
+template <class S>
+struct Gaussian {
+    S value(S x) const { return std::exp(x * x); }
+    S first(S x) const { return S(2) * x * std::exp(x * x); }
+    S second(S x) const { return (S(2) + S(4) * x * x) * std::exp(x * x); }
+};
+
 /// A gradient of the wrong sign.
 struct WrongGradient : Spring<double> {
     double first(double x) const { return -x; }
@@ -123,6 +131,35 @@ TEST_CASE_TEMPLATE("far from a minimum the filtered step descends; the energy ne
         CHECK(std::abs(tail.d(0, 1)) < Scalar(1e-5));
         check_monotone(tail.energies, tail.report.energy);
     }
+}
+
+TEST_CASE_TEMPLATE("exponentials are left in few steps, however large", Scalar, float, double) {
+    const Scalar exponent = sizeof(Scalar) == 4 ? Scalar(64) : Scalar(400);
+    const SequentialExecutor executor;
+    SeparableEnergy<Scalar, Gaussian<Scalar>> term{};
+    Objective objective(PrescribedVertices(1, {}), executor, term);
+    DirectSolver<Scalar> linear_solver;
+    NewtonOptions<Scalar> options{.max_iterations = 500, .step_tolerance = Scalar(1e-5), .max_doublings = 0};
+    const Matrix3X<Scalar> start{{std::sqrt(exponent)}, {std::sqrt(exponent / 2)}, {-std::sqrt(exponent / 3)}};
+    Matrix3X<Scalar> d = start;
+    CHECK(minimise(objective, linear_solver, d, options).iterations > int(exponent) - 20);
+
+    options.max_doublings = NewtonOptions<Scalar>{}.max_doublings;
+    d = start;
+    std::vector<Scalar> energies;
+    const SolveReport<Scalar> report =
+        minimise(objective, linear_solver, d, options, [&](const NewtonProgress<Scalar>& progress) {
+            energies.push_back(progress.energy);
+            // energy and gradient of the point that was accepted, not of the last one that was tried
+            CHECK(objective.energy(d) == progress.energy);
+            CHECK(objective.gradient(d).cwiseAbs().maxCoeff() == progress.residual);
+            return true;
+        });
+    CHECK(report.succeeded());
+    CHECK(report.iterations <= 25);
+    CHECK(report.energy_evaluations <= 100);
+    CHECK(d.cwiseAbs().maxCoeff() < Scalar(1e-5));
+    check_monotone(energies, report.energy);
 }
 
 TEST_CASE("each filter finds the minimum; without one an indefinite Hessian ends the solve") {
