@@ -47,7 +47,15 @@ struct DualQuaternion {
     }
 
     AffineTransform<S> blend(const MatrixX<S>& prepared, std::span<const JointWeight<RealOf<S>>> row) const {
-        using Column = Eigen::Matrix<S, 8, 1>;
+        return transform_of<S>(blended_numbers(prepared, row));
+    }
+
+    static constexpr int num_blended = 8;
+
+    /// The dual quaternion before it is normalised.
+    Eigen::Matrix<S, num_blended, 1> blended_numbers(const MatrixX<S>& prepared,
+                                                     std::span<const JointWeight<RealOf<S>>> row) const {
+        using Column = Eigen::Matrix<S, num_blended, 1>;
         SOFTTISSUE_ASSERT(!row.empty());
         JointWeight<RealOf<S>> pivot = row.front();
         for (const JointWeight<RealOf<S>>& entry : row) {
@@ -63,16 +71,17 @@ struct DualQuaternion {
             const S* const column = prepared.data() + prepared.rows() * Index(joint);
             sum += S(weight) * column[8 + pivot.joint] * Eigen::Map<const Column>(column);
         }
-        // |real| >= largest weight > 0: every aligned quaternion has a non-negative component along the pivot's
-        return rigid_motion(sum.template head<4>(), sum.template tail<4>());
+        return sum;
     }
 
-private:
     /// Rotation and translation of (q + eps e) / |q|: R(q / |q|), and the vector part of 2 e conj(q) / |q|^2.
-    static AffineTransform<S> rigid_motion(const Quaternion<S>& q, const Quaternion<S>& e) {
-        const S factor = S(2) / q.squaredNorm();
-        const Quaternion<S> scaled = factor * q;
-        const Quaternion<S> conjugate(scaled(0), -scaled(1), -scaled(2), -scaled(3));
+    /// |q| >= largest weight > 0: every aligned quaternion has a non-negative component along the pivot's.
+    template <FieldScalar T>
+    static AffineTransform<T> transform_of(const Eigen::Matrix<T, num_blended, 1>& numbers) {
+        const Quaternion<T> q = numbers.template head<4>(), e = numbers.template tail<4>();
+        const T factor = T(2) / T(q.squaredNorm());
+        const Quaternion<T> scaled = factor * q;
+        const Quaternion<T> conjugate(scaled(0), -scaled(1), -scaled(2), -scaled(3));
         return {rotation_matrix_from_scaled_quaternions(q, scaled),
                 quaternion_product(e, conjugate).template tail<3>()};
     }

@@ -5,6 +5,7 @@
 #include <softtissue/linalg/quaternion.hpp>
 #include <softtissue/skinning/dual_quaternion.hpp>
 #include <softtissue/skinning/linear_blend.hpp>
+#include <softtissue/testing/random_states.hpp>
 
 #include <support/refusal.hpp>
 
@@ -30,6 +31,13 @@ struct Example {
     }
 };
 
+/// Of many points at once against one.
+template <class Policy>
+constexpr typename Policy::Scalar rounding() {
+    using S = typename Policy::Scalar;
+    return PackedSkinningPolicy<Policy> ? S(16) * std::numeric_limits<S>::epsilon() : S(0);
+}
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("every point goes where the blend of its row takes it", Policy, LinearBlend<float>,
@@ -44,12 +52,48 @@ TEST_CASE_TEMPLATE("every point goes where the blend of its row takes it", Polic
     CHECK(prepared == expected_prepared);
     REQUIRE(x.cols() == 4);
     for (Index v = 0; v < 4; ++v) {
-        CHECK(x.col(v) == policy.blend(expected_prepared, example.weights.row(v))(example.rest.col(v)));
+        const Vector3<S> one = policy.blend(expected_prepared, example.weights.row(v))(example.rest.col(v));
+        CHECK((x.col(v) - one).norm() <= rounding<Policy>() * one.norm());
     }
-    CHECK(x.col(0) == example.rest.col(0));
+    CHECK((x.col(0) - example.rest.col(0)).norm() == S(0));
     Matrix3X<S> by_threads;
     skin_points_into(policy, example.joints, example.weights, example.rest, prepared, by_threads, ThreadExecutor(3));
     CHECK(by_threads == x);
+}
+
+TEST_CASE_TEMPLATE("any number of points moves as one by one, with the same bits for any number of threads", Policy,
+                   LinearBlend<float>, LinearBlend<double>, DualQuaternion<float>, DualQuaternion<double>) {
+    using S = typename Policy::Scalar;
+    constexpr Index num_joints = 7;
+    RandomGenerator random(3);
+    std::vector<AffineTransform<S>> joints;
+    for (Index j = 0; j < num_joints; ++j) {  // up to any angle: quaternions of both signs
+        joints.push_back({random_rotation<S>(random), random_normal<Vector3<S>>(random)});
+    }
+    const Policy policy;
+    for (const Index count : {1, 7, 8, 9, 16, 31, 200}) {
+        MatrixX<S> dense(count, num_joints);
+        Matrix3X<S> rest(3, count);
+        for (Index v = 0; v < count; ++v) {
+            for (Index j = 0; j < num_joints; ++j) {
+                dense(v, j) = (v + j) % 3 == 0 ? S(random.uniform(0.1, 1)) : S(0);
+            }
+            dense.row(v) /= dense.row(v).sum();
+            rest.col(v) = random_normal<Vector3<S>>(random);
+        }
+        const SkinningWeights<S> weights(dense);
+        MatrixX<S> prepared;
+        Matrix3X<S> x, by_threads;
+        skin_points_into(policy, joints, weights, rest, prepared, x);
+        for (Index v = 0; v < count; ++v) {
+            const Vector3<S> one = policy.blend(prepared, weights.row(v))(rest.col(v));
+            CHECK((x.col(v) - one).norm() <= S(4) * rounding<Policy>());
+        }
+        for (const int threads : {2, 3}) {
+            skin_points_into(policy, joints, weights, rest, prepared, by_threads, ThreadExecutor(threads));
+            CHECK(by_threads == x);
+        }
+    }
 }
 
 TEST_CASE("weights of other points are refused") {
