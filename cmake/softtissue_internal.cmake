@@ -21,6 +21,11 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
         $<$<NOT:$<STREQUAL:$<TARGET_PROPERTY:SOFTTISSUE_MACHINE>,this>>:-Werror>)
 endif()
 
+# g++ looks for garbage often while it has little; with room for a gigabyte it takes a twelfth less time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(softtissue_warnings INTERFACE --param=ggc-min-heapsize=1000000 --param=ggc-min-expand=200)
+endif()
+
 # The library, every component that is present (told by SOFTTISSUE_HAS_<component>), threads and the warnings.
 add_library(softtissue_everything INTERFACE)
 target_link_libraries(softtissue_everything INTERFACE softtissue::softtissue softtissue_warnings Threads::Threads)
