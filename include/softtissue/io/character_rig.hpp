@@ -95,15 +95,9 @@ public:
 
     /// The clip at `frame_rate` [1/s].
     Motion<double> motion(const GltfClip& clip, double frame_rate) const {
-        constexpr double most_frames = 1e6;
-        require(std::isfinite(frame_rate) && frame_rate > 0.0, character_->source, ": frame rate is ", frame_rate,
-                ", expected > 0");
-        const double last = std::floor(clip.duration() * frame_rate + 1e-6);
-        require(last < most_frames, character_->source, ": clip '", clip.name, "' lasts ", clip.duration(),
-                " s, expected less than ", most_frames, " frames");
         Motion<double> motion;
         motion.frame_rate = frame_rate;
-        for (Index k = 0; k <= Index(last); ++k) {
+        for (Index k = 0; k < num_frames(clip, frame_rate); ++k) {
             motion.poses.push_back(pose(clip, clip.start + double(k) / frame_rate));
         }
         return motion;
@@ -147,18 +141,19 @@ public:
     BoneChange bone_change(const GltfClip& clip) const {
         const double frame_rate = default_frame_rate(clip);
         BoneChange largest;
-        for (double k = 0.0; k <= clip.duration() * frame_rate + 1e-6; k += 1.0) {
+        for (Index k = 0; k < num_frames(clip, frame_rate); ++k) {
             const std::vector<AffineTransform<double>> T =
-                character_->joint_transforms(clip, clip.start + k / frame_rate);
+                character_->joint_transforms(clip, clip.start + double(k) / frame_rate);
             for (size_t j = 0; j < joints_.size(); ++j) {
+                if (!moves_skin_[j]) {
+                    continue;
+                }
                 const AffineTransform<double>& own = T[size_t(joints_[j])];
-                const double shift = moves_skin_[j] ? shift_of(T, j) : 0.0;
+                largest.stretch = std::max(largest.stretch, stretch_of(own, polar_rotation(own.linear)));
+                const double shift = shift_of(T, j);
                 if (shift > largest.shift) {
                     largest.shift = shift;
                     largest.shifted_joint = character_->joint_names[size_t(joints_[j])];
-                }
-                if (moves_skin_[j]) {
-                    largest.stretch = std::max(largest.stretch, stretch_of(own, polar_rotation(own.linear)));
                 }
             }
         }
@@ -166,6 +161,16 @@ public:
     }
 
 private:
+    Index num_frames(const GltfClip& clip, double frame_rate) const {
+        constexpr double most_frames = 1e6;
+        require(std::isfinite(frame_rate) && frame_rate > 0.0, character_->source, ": frame rate is ", frame_rate,
+                ", expected > 0");
+        const double last = std::floor(clip.duration() * frame_rate + 1e-6);
+        require(last < most_frames, character_->source, ": clip '", clip.name, "' lasts ", clip.duration(),
+                " s, expected less than ", most_frames, " frames");
+        return Index(last) + 1;
+    }
+
     static double default_frame_rate(const GltfClip& clip) { return std::clamp(clip.key_rate(), 30.0, 240.0); }
 
     static double stretch_of(const AffineTransform<double>& transform, const Matrix3<double>& rotation) {

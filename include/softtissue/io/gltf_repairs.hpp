@@ -13,8 +13,7 @@
 namespace softtissue {
 
 struct GltfRepairs {
-    Index rescaled_vertices =
-        0;  ///< whose weights do not sum to one, as far as their type can hold: divided by the sum
+    Index rescaled_vertices = 0;     ///< whose weights do not sum to one, rounding apart: divided by their sum
     double largest_sum_error = 0.0;  ///< |sum - 1| of these
     Index averaged_places = 0;       ///< where vertices of different weights lie: the mean of them
     double largest_weight_difference = 0.0;

@@ -38,8 +38,7 @@ struct GltfSurface {
     Triangles triangles;
     std::vector<std::vector<JointWeight<double>>> weights;  ///< per vertex, joints of the skin ascending
     std::vector<Matrix3X<double>> morph_targets;            ///< offsets
-    std::vector<std::int32_t>
-        welded_vertex;  ///< of each vertex in the file, in the order of the parts (gltf_welding.hpp)
+    std::vector<std::int32_t> welded_vertex;                ///< of each vertex in the file (gltf_welding.hpp)
     std::vector<std::int32_t> hole_centers;  ///< vertices that are not in the file (gltf_hole_filling.hpp)
     GltfRepairs repairs;
 };

@@ -154,6 +154,9 @@ TEST_CASE("bones that are scaled or pulled are refused by joint, clip and time")
     CHECK(
         contains(refusal([&] { CharacterRig(helped).motion(helped.clips[0], 0.0); }), "frame rate is 0, expected > 0"));
     CHECK(contains(refusal([&] { CharacterRig(helped).motion(helped.clips[0], 1e9); }), "expected less than"));
+    GltfClip endless = helped.clips[0];
+    endless.end = 1e300;
+    CHECK(contains(refusal([&] { CharacterRig(helped).bone_change(endless); }), "expected less than"));
 }
 
 TEST_CASE("a flat surface has no place for joints") {
