@@ -23,6 +23,7 @@
 #include <softtissue/skinning/affine_transform.hpp>
 #include <softtissue/skinning/weights.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <span>
 
@@ -36,15 +37,19 @@ concept SkinningPolicy = std::copy_constructible<P> &&
     { policy.blend(prepared, row) } -> std::same_as<AffineTransform<typename P::Scalar>>;
 };
 
-template <class P>
-concept PackedSkinningPolicy = SkinningPolicy<P> && RealScalar<typename P::Scalar> && requires(
-    const P& policy, const MatrixX<typename P::Scalar>& prepared,
-    std::span<const JointWeight<RealOf<typename P::Scalar>>> row,
-    const Eigen::Matrix<Pack<typename P::Scalar, natural_lanes<typename P::Scalar>>, P::num_blended, 1>& packed) {
-    { policy.blended_numbers(prepared, row) } -> std::same_as<Eigen::Matrix<typename P::Scalar, P::num_blended, 1>>;
-    {
-        P::template transform_of<Pack<typename P::Scalar, natural_lanes<typename P::Scalar>>>(packed)
-        } -> std::same_as<AffineTransform<Pack<typename P::Scalar, natural_lanes<typename P::Scalar>>>>;
+/// So many points at once: sixteen floats cost more to collect than they save.
+template <RealScalar S>
+inline constexpr int skinning_width = std::min(natural_lanes<S>, 8);
+
+template <RealScalar S>
+using SkinningLanes = Pack<S, skinning_width<S>>;
+
+template <class P, class S = typename P::Scalar>
+concept PackedSkinningPolicy = SkinningPolicy<P> && RealScalar<S> &&
+    requires(const P& policy, const MatrixX<S>& prepared, std::span<const JointWeight<S>> row,
+             const Eigen::Matrix<SkinningLanes<S>, P::num_blended, 1>& numbers) {
+    { policy.blended_numbers(prepared, row) } -> std::same_as<Eigen::Matrix<S, P::num_blended, 1>>;
+    { P::template transform_of<SkinningLanes<S>>(numbers) } -> std::same_as<AffineTransform<SkinningLanes<S>>>;
 };
 
 }  // namespace softtissue

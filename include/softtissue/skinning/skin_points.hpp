@@ -33,9 +33,9 @@ namespace detail {
 template <PackedSkinningPolicy Policy, class S = typename Policy::Scalar>
 void skin_packs(const Policy& policy, const MatrixX<S>& prepared, const SkinningWeights<S>& weights,
                 const Matrix3X<S>& rest, Index begin, Index end, Matrix3X<S>& x) {
-    constexpr int width = std::min(natural_lanes<S>, 8);  // sixteen floats cost more to collect than they save
+    using Lanes = SkinningLanes<S>;
+    constexpr int width = skinning_width<S>;
     constexpr int count = Policy::num_blended;
-    using Lanes = Pack<S, width>;
     std::array<Eigen::Matrix<S, count, 1>, size_t(width)> numbers;
     numbers.fill(Eigen::Matrix<S, count, 1>::Ones());
     for (Index first = begin; first < end; first += width) {
