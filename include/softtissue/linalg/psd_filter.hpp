@@ -2,20 +2,19 @@
 /// @file
 /// Makes a small symmetric matrix positive semi-definite by treating its negative eigenvalues.
 ///
-/// What        PsdFilter {none, clamp, absolute}; filtered(H, filter) by a numeric eigen-decomposition
+/// What        PsdFilter {none, clamp, absolute}; filtered(H, filter) by numeric eigenpairs
 /// Equation    H = sum_k l_k v_k v_k^T  ->  sum_k f(l_k) v_k v_k^T;  clamp: f(l) = max(l, 0), absolute: f(l) = |l|
 /// Shapes      H: N x N, N > 1 fixed.  Only the lower triangle is read; the result is exactly symmetric.
 /// Valid       every finite H.  A matrix that holds NaN or infinity stays non-finite, nothing is thrown.
 ///             Packs: no lane depends on the others.
 /// Source      clamp: Teran et al. 2005; absolute: Chen et al. 2024, "Stabler Neo-Hookean Simulation"
-/// Cost        one Cholesky factorisation where H is positive definite, else one eigen-decomposition
+/// Cost        one Cholesky factorisation where H is positive definite, else the eigenpairs below zero (negative_eigenpairs.hpp)
 /// Tests       tests/unit/linalg/psd_filter_test.cpp
 #pragma once
 
 #include <softtissue/core/pack_math.hpp>
-#include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
-#include <softtissue/linalg/symmetric_eigen.hpp>
+#include <softtissue/linalg/negative_eigenpairs.hpp>
 
 #include <Eigen/Core>
 
@@ -49,7 +48,7 @@ auto is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
         if (!any_of(is_definite)) {
             break;
         }
-        const Scalar inverse = reciprocal(H(k, k));
+        const Scalar inverse = Scalar(1) / H(k, k);
         for (int j = k + 1; j < N; ++j) {
             const Scalar factor = H(j, k) * inverse;
             for (int i = j; i < N; ++i) {
@@ -60,40 +59,45 @@ auto is_positive_definite(Eigen::Matrix<Scalar, N, N> H) {
     return is_definite;
 }
 
+/// Filters H, of which the lower triangle counts, where `is_changing`. Only the negative part is touched, so that what is
+/// already positive keeps its digits.
+template <RealLanes Scalar, int N, class Mask>
+void filter_lower(const Mask& is_changing, PsdFilter filter, Eigen::Matrix<Scalar, N, N>& H) {
+    const Scalar zero(0);
+    const Eigenpairs<Scalar, N> eigen = negative_eigenpairs(H);
+    for (int k = 0; k < eigen.count; ++k) {
+        const Scalar difference = filtered_eigenvalue(eigen.values(k), filter) - eigen.values(k);
+        const auto is_added = is_changing & (difference != zero);
+        const Scalar change = select(is_added, difference, zero);
+        Eigen::Matrix<Scalar, N, 1> v;
+        for (int i = 0; i < N; ++i) {
+            v(i) = select(is_added, eigen.vectors(i, k), zero);  // zero times what is not finite is no zero
+        }
+        for (int j = 0; j < N; ++j) {
+            const Scalar factor = change * v(j);
+            for (int i = j; i < N; ++i) {
+                H(i, j) += factor * v(i);
+            }
+        }
+    }
+}
+
 }  // namespace detail
 
 /// H with its negative eigenvalues filtered; H itself where there are none (or `filter` is none).
 template <RealLanes Scalar, int N>
     requires(N > 1)
 Eigen::Matrix<Scalar, N, N> filtered(const Eigen::Matrix<Scalar, N, N>& H, PsdFilter filter) {
-    using Matrix = Eigen::Matrix<Scalar, N, N>;
-    Matrix result;
+    Eigen::Matrix<Scalar, N, N> result = H;
+    if (filter != PsdFilter::none) {
+        const auto is_definite = detail::is_positive_definite(H);
+        if (!all_of(is_definite)) {
+            detail::filter_lower(!is_definite, filter, result);
+        }
+    }
     for (int j = 0; j < N; ++j) {
-        for (int i = j; i < N; ++i) {
-            result(i, j) = result(j, i) = H(i, j);
-        }
-    }
-    if (filter == PsdFilter::none) {
-        return result;
-    }
-    const auto is_definite = detail::is_positive_definite(H);
-    if (all_of(is_definite)) {
-        return result;
-    }
-    const SymmetricEigen<Scalar, N> eigen = symmetric_eigen(H);
-    // Only the negative part is touched, so what is already positive keeps its digits.
-    for (int k = 0; k < N; ++k) {
-        const Scalar change =
-            select(is_definite, Scalar(0), Scalar(filtered_eigenvalue(eigen.values(k), filter) - eigen.values(k)));
-        if (all_of(change == Scalar(0))) {
-            continue;
-        }
-        for (int j = 0; j < N; ++j) {
-            const Scalar v = change * eigen.vectors(j, k);
-            for (int i = j; i < N; ++i) {
-                result(i, j) += v * eigen.vectors(i, k);
-                result(j, i) = result(i, j);
-            }
+        for (int i = j + 1; i < N; ++i) {
+            result(j, i) = result(i, j);
         }
     }
     return result;

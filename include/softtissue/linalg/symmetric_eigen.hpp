@@ -20,8 +20,6 @@
 #include <softtissue/linalg/tridiagonal_ql.hpp>
 #include <softtissue/linalg/unit_scale.hpp>
 
-#include <cmath>
-
 namespace softtissue {
 
 template <RealLanes Scalar, int N>
@@ -33,31 +31,31 @@ struct SymmetricEigen {
 template <RealLanes Scalar, int N>
     requires(N > 1)
 SymmetricEigen<Scalar, N> symmetric_eigen(const Eigen::Matrix<Scalar, N, N>& lower) {
-    using std::abs;
-    using std::max;
     const Scalar zero(0);
-    Scalar largest(0), not_a_number(0);
+    Scalar not_a_number(0);
     for (int j = 0; j < N; ++j) {
         for (int i = j; i < N; ++i) {
-            largest = max(largest, Scalar(abs(lower(i, j))));
             not_a_number += lower(i, j) * zero;
         }
     }
-    // With a largest entry of 1 no square leaves the range of the scalar.
-    const UnitScale<Scalar> scale(largest);
     SymmetricEigen<Scalar, N> result;
-    for (int j = 0; j < N; ++j) {
-        for (int i = j; i < N; ++i) {
-            result.vectors(i, j) = result.vectors(j, i) = scale.unit(lower(i, j));
-        }
-    }
     if constexpr (N == 3) {
+        const UnitScale<Scalar> scale(largest_entry(lower));
+        for (int j = 0; j < N; ++j) {
+            for (int i = j; i < N; ++i) {
+                result.vectors(i, j) = scale.unit(lower(i, j));
+            }
+        }
         result.values = diagonalise_by_deflation(result.vectors);
+        for (int i = 0; i < N; ++i) {
+            result.values(i) = scale.original(result.values(i));
+        }
     } else {
+        result.vectors = lower;
         result.values = diagonalise_by_ql(result.vectors);
     }
     for (int i = 0; i < N; ++i) {
-        result.values(i) = scale.original(result.values(i)) + not_a_number;
+        result.values(i) += not_a_number;
     }
     if (!all_of(not_a_number == zero)) {
         for (int j = 0; j < N; ++j) {

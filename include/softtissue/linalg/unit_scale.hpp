@@ -13,7 +13,10 @@
 #include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace softtissue {
@@ -36,5 +39,21 @@ public:
 private:
     Scalar first_, second_, size_;
 };
+
+/// The largest size of an entry of the lower triangle.
+template <RealLanes Scalar, int N>
+Scalar largest_entry(const Eigen::Matrix<Scalar, N, N>& lower) {
+    using std::abs;
+    using std::max;
+    Scalar result(0);
+    for (int j = 0; j < N; ++j) {
+        Scalar of_column = abs(lower(j, j));
+        for (int i = j + 1; i < N; ++i) {
+            of_column = max(of_column, Scalar(abs(lower(i, j))));
+        }
+        result = max(result, of_column);
+    }
+    return result;
+}
 
 }  // namespace softtissue

@@ -18,7 +18,7 @@
 /// Source      Romero et al. 2020, eq. (4) and (5)
 /// Departs     continuation of the exponential; expm1 in place of exp - 1
 /// Cost        energy 120 flop, stress 250 flop, an exponential for both; Hessian 1200 flop + 1; projection: a Cholesky
-///             factorisation where H is positive definite, else a numeric 9x9 eigen-decomposition
+///             factorisation where H is positive definite, else its negative eigenpairs (negative_eigenpairs.hpp)
 /// Tests       tests/unit/material/fung_orthotropic_test.cpp
 #pragma once
 

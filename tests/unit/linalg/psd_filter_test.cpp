@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <softtissue/linalg/psd_filter.hpp>
 
+#include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack.hpp>
+
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 using namespace softtissue;
 
@@ -116,4 +121,18 @@ TEST_CASE("a matrix that is not finite stays so") {
     H(1, 0) = H(0, 1) = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(filtered(H, PsdFilter::clamp).allFinite());
     CHECK_FALSE(filtered(H, PsdFilter::absolute).allFinite());
+}
+
+TEST_CASE_TEMPLATE("a lane depends on no other, overflow beside it included", S, float, double) {
+    using Matrix3 = Eigen::Matrix<S, 3, 3>;
+    constexpr int width = natural_lanes<S>;
+    const S infinity = std::numeric_limits<S>::infinity();
+    std::vector<Matrix3> list(std::size_t(width), -Matrix3::Identity());
+    list[0] = Vector3<S>(infinity, 1, 1).asDiagonal();  // its Cholesky factorisation exists
+    list[0](1, 0) = list[0](0, 1) = S(1);
+    const auto together = filtered(packed_matrix<width>([&](int i) { return list[std::size_t(i)]; }), PsdFilter::clamp);
+    for (int i = 0; i < width; ++i) {
+        const auto alone = filtered(packed_matrix<width>([&](int) { return list[std::size_t(i)]; }), PsdFilter::clamp);
+        CHECK(lane(together, i) == lane(alone, i));
+    }
 }
