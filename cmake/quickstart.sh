@@ -3,13 +3,14 @@
 #
 #   sh cmake/quickstart.sh demo    installs what is missing, builds, animates the embedded body
 #   sh cmake/quickstart.sh test    the same for the test suite
+#   sh cmake/quickstart.sh packages    installs only, what the test suite needs
 #
 # Packages are installed with apt-get, as root or through sudo, and only if one is missing. On another system the
 # script names the packages and stops.
 set -eu
 
 usage() {
-    echo "usage: sh cmake/quickstart.sh demo|test" >&2
+    echo "usage: sh cmake/quickstart.sh demo|test|packages" >&2
     exit 2
 }
 
@@ -23,7 +24,7 @@ packages="g++ cmake ninja-build pkg-config libeigen3-dev libzip-dev libtinygltf-
     nlohmann-json3-dev libcli11-dev libcairo2-dev libsuitesparse-dev zlib1g-dev"
 case "$task" in
 demo) ;;
-test) packages="$packages doctest-dev catch2 libbenchmark-dev libtet1.5-dev" ;;
+test | packages) packages="$packages doctest-dev catch2 libbenchmark-dev libtet1.5-dev" ;;
 *) usage ;;
 esac
 
@@ -79,6 +80,7 @@ check_cmake() {
 
 install_packages
 check_cmake
+[ "$task" != packages ] || exit 0
 
 build=build/quickstart
 say "Configuring in $build"
