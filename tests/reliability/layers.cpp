@@ -38,8 +38,7 @@ void pose_layers(Ledger& ledger, Limb& limb, long count, std::uint64_t seed) {
         Tally& tally = ledger.begin(std::string("layered limb by ") + to_string(method));
         tally.rest_tolerance = 1e-6;
         Matrix3X<double> x;
-        const long trials = method == AnimationMethod::fem ? (count + 9) / 10 : count;
-        for (long k = 0; k < trials; ++k) {
+        for (long k = 0; k < count; ++k) {
             RandomGenerator random(seed + std::uint64_t(k));
             const Transforms transforms = limb.transforms(random_pose<double>(2, random));
             tally.attempt([&] {
