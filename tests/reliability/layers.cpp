@@ -165,7 +165,7 @@ void open_doors(Ledger& ledger, Limb& limb) {
         return outcome;
     });
     const auto flesh = [&](const char* name, const char* word, double FleshParameters<double>::*member) {
-        doors.open(name, word, [&limb, &rest, &body, member](double bad) {
+        doors.open(name, word, [&rest, &body, member](double bad) {
             FleshParameters<double> parameters;
             parameters.*member = bad;
             LayeredFlesh<double, SequentialExecutor> solver(body, parameters, executor);

@@ -3,7 +3,7 @@
 /// The negative eigenvalues of a small symmetric matrix and their eigenvectors.
 ///
 /// What        values and vectors of all negative eigenvalues at least: in the first `count` columns; a lane that has fewer has values there
-///             that are not negative, or are so within rounding
+///             that are zero, or not negative but within rounding
 /// Equation    Laguerre's method gives the smallest eigenvalue of the tridiagonal form, plane rotations take it off, and so on with
 ///             the rest until the minors of that say that it is positive definite
 /// Shapes      H: N x N, N > 1 up to about a dozen; only the lower triangle is read
@@ -67,8 +67,11 @@ Eigenpairs<Scalar, N> negative_eigenpairs(const Eigen::Matrix<Scalar, N, N>& low
         return {N, eigen.values, eigen.vectors};
     } else {
         using Real = RealOf<Scalar>;
+        const Scalar zero(0);
+        Eigenpairs<Scalar, N> result;
         TridiagonalForm<Scalar, N> T(lower);
-        std::array<detail::QlRotations<Scalar, N>, std::size_t(3 * N)> steps;
+        constexpr std::size_t max_ql_steps = std::size_t(3 * N);  // next to none is usual
+        std::array<detail::QlRotations<Scalar, N>, max_ql_steps + std::size_t(N)> steps;
         std::size_t num_steps = 0;
         const Scalar smallest(Real(-2) * std::numeric_limits<Real>::epsilon());
         Scalar eigenvalue = eigenvalue_bound(T.diagonal, T.below);
@@ -79,6 +82,7 @@ Eigenpairs<Scalar, N> negative_eigenpairs(const Eigen::Matrix<Scalar, N, N>& low
                 break;
             }
             if (first == N - 1) {
+                result.values(first) = select(is_wanted, T.original(T.diagonal(first)), zero);
                 continue;
             }
             eigenvalue = smallest_eigenvalue(eigenvalue, is_wanted, first, T.diagonal, T.below);
@@ -88,7 +92,7 @@ Eigenpairs<Scalar, N> negative_eigenpairs(const Eigen::Matrix<Scalar, N, N>& low
                 deflate(is_wanted, eigenvalue, first, T.diagonal, T.below, rotations.cosines, rotations.sines);
             auto is_active = is_wanted & !is_done & is_coupling(T.below(first));
             Scalar shift = eigenvalue;
-            while (any_of(is_active) && num_steps < steps.size()) {
+            while (any_of(is_active) && num_steps < max_ql_steps) {
                 auto& step = steps[num_steps++];
                 step.first = first;
                 ql_step(is_active, first, shift, T.diagonal, T.below,
@@ -99,8 +103,8 @@ Eigenpairs<Scalar, N> negative_eigenpairs(const Eigen::Matrix<Scalar, N, N>& low
                 is_active = is_active & is_coupling(T.below(first));
                 shift = wilkinson_shift(T.diagonal, T.below, first);
             }
+            result.values(first) = select(is_wanted, T.original(T.diagonal(first)), zero);
         }
-        Eigenpairs<Scalar, N> result;
         result.count = first;
         for (int k = 0; k < result.count; ++k) {
             Eigen::Matrix<Scalar, N, 1> v;
@@ -112,7 +116,6 @@ Eigenpairs<Scalar, N> negative_eigenpairs(const Eigen::Matrix<Scalar, N, N>& low
             }
             T.apply_reflections(v);
             result.vectors.col(k) = v;
-            result.values(k) = T.original(T.diagonal(k));
         }
         return result;
     }

@@ -66,9 +66,9 @@ void filter_lower(const Mask& is_changing, PsdFilter filter, Eigen::Matrix<Scala
     const Scalar zero(0);
     const Eigenpairs<Scalar, N> eigen = negative_eigenpairs(H);
     for (int k = 0; k < eigen.count; ++k) {
-        const Scalar difference = filtered_eigenvalue(eigen.values(k), filter) - eigen.values(k);
-        const auto is_added = is_changing & (difference != zero);
-        const Scalar change = select(is_added, difference, zero);
+        const auto is_added = is_changing & (eigen.values(k) < zero);
+        const Scalar value = select(is_added, eigen.values(k), zero);
+        const Scalar change = filtered_eigenvalue(value, filter) - value;
         Eigen::Matrix<Scalar, N, 1> v;
         for (int i = 0; i < N; ++i) {
             v(i) = select(is_added, eigen.vectors(i, k), zero);  // zero times what is not finite is no zero

@@ -125,3 +125,17 @@ TEST_CASE("what is not finite ends") {
         CHECK(negative_eigenpairs(A).count <= 9);
     }
 }
+
+TEST_CASE_TEMPLATE("a lane that has fewer has zeros, also where its eigenvalues are no numbers", S, float, double) {
+    constexpr int N = 9, width = natural_lanes < S >> 1 ? natural_lanes<S> : 4;
+    const Square<S, N> negative = -Square<S, N>::Identity();
+    const Square<S, N> large = Square<S, N>::Constant(std::numeric_limits<S>::max() / S(2)) +
+                               Square<S, N>(std::numeric_limits<S>::max() / S(4) * Square<S, N>::Identity());
+    const auto pairs =
+        negative_eigenpairs(packed_matrix<width>([&](int i) { return Square<S, N>(i == 0 ? large : negative); }));
+    CHECK(pairs.count == N);
+    for (int k = 0; k < N; ++k) {
+        CHECK(lane(pairs.values(k), 0) == S(0));
+        CHECK(lane(pairs.values(k), 1) == S(-1));
+    }
+}

@@ -136,3 +136,15 @@ TEST_CASE_TEMPLATE("a lane depends on no other, overflow beside it included", S,
         CHECK(lane(together, i) == lane(alone, i));
     }
 }
+
+TEST_CASE_TEMPLATE("an eigenvalue too large for a number does no harm", S, float, double) {
+    using Matrix4 = Eigen::Matrix<S, 4, 4>;
+    Matrix4 H = Matrix4::Constant(std::numeric_limits<S>::max() / S(2));  // largest eigenvalue 2 max, others 0 and -1
+    H(3, 3) = S(-1);
+    H.col(3).head(3).setZero();
+    H.row(3).head(3).setZero();
+    const Matrix4 clamped = filtered(H, PsdFilter::clamp);
+    CHECK(clamped.allFinite());
+    CHECK((clamped / std::numeric_limits<S>::max() - H / std::numeric_limits<S>::max()).cwiseAbs().maxCoeff() <
+          S(1e-5));
+}
