@@ -27,7 +27,7 @@ namespace examples {
 
 namespace {
 
-struct Settings {
+struct AnimateSettings {
     std::string model, motion, out = "ndg.glb", picture, weights = "full";
     SceneFiles files;
     std::vector<double> betas;
@@ -42,7 +42,7 @@ struct Frames {
     Index stride = 1, count = 0;
 };
 
-Frames choose_frames(const Settings& settings, const Motion<Scalar>& motion) {
+Frames choose_frames(const AnimateSettings& settings, const Motion<Scalar>& motion) {
     Frames frames;
     frames.stride = std::max<Index>(1, Index(std::lround(motion.frame_rate / settings.frame_rate)));
     frames.count = (motion.num_frames() + frames.stride - 1) / frames.stride;
@@ -53,8 +53,8 @@ Frames choose_frames(const Settings& settings, const Motion<Scalar>& motion) {
 }
 
 /// At most 200 of the frames.
-MatrixX<float> typical_inputs(const NeuralModel<float>& model, const Scene& scene, const Motion<Scalar>& motion,
-                              const Frames& frames) {
+MatrixX<float> inputs_of_motion(const NeuralModel<float>& model, const Scene& scene, const Motion<Scalar>& motion,
+                                const Frames& frames) {
     std::vector<Pose<Scalar>> poses;
     const Index step = (frames.count + 199) / 200;
     for (Index k = 0; k < frames.count; k += std::max<Index>(1, step)) {
@@ -64,7 +64,7 @@ MatrixX<float> typical_inputs(const NeuralModel<float>& model, const Scene& scen
                                          shape_input(model, scene.layered.mesh.rest_positions));
 }
 
-void animate(const Settings& settings) {
+void animate(const AnimateSettings& settings) {
     watch_interrupt();
     require_writable(settings.out);
     const NeuralModel<float> model = read_model(settings.model);
@@ -75,7 +75,7 @@ void animate(const Settings& settings) {
     Poisson poisson = make_poisson(layered);
     const Frames frames = choose_frames(settings, motion);
     const auto small =
-        quantized(model, weight_format_of(settings.weights), typical_inputs(model, scene, motion, frames));
+        quantized(model, weight_format_of(settings.weights), inputs_of_motion(model, scene, motion, frames));
     PosingNetwork network(model, layered, scene.skin.tree(), scene.body.joint_names, poisson, settings.threads,
                           small.get());
 
@@ -157,7 +157,7 @@ void animate(const Settings& settings) {
 }  // namespace
 
 void add_animate(CLI::App& app) {
-    const auto settings = std::make_shared<Settings>();
+    const auto settings = std::make_shared<AnimateSettings>();
     CLI::App* const command =
         app.add_subcommand("animate",
                            "A body in motion by a trained model: skin, muscles and bones as .glb, "

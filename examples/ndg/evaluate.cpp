@@ -23,7 +23,7 @@ namespace examples {
 
 namespace {
 
-struct Settings {
+struct EvaluateSettings {
     std::string data, body, out = "ndg_evaluation", json;
     std::vector<std::string> weights{"full"};
     std::vector<std::string> models;
@@ -39,7 +39,7 @@ DatasetSplit split_of(const std::string& name) {
 }
 
 /// Every model with every kind of weights. Two models of one name are told apart by their files.
-EvaluationSetup read_setup(const Settings& settings, const DatasetFolder& data) {
+EvaluationSetup read_setup(const EvaluateSettings& settings, const DatasetFolder& data) {
     EvaluationSetup setup{
         .models = {}, .methods = settings.methods, .threads = settings.threads, .max_samples = settings.max_samples};
     for (const std::string& file : settings.models) {
@@ -84,12 +84,12 @@ std::vector<ErrorMap> error_maps(const EvaluationSetup& setup, const SplitResult
     return maps;
 }
 
-ErrorSurface error_surface(const Settings& settings, const DatasetFolder& data) {
+ErrorSurface error_surface(const EvaluateSettings& settings, const DatasetFolder& data) {
     return settings.body.empty() ? layered_surface(data.mean_body())
                                  : whole_surface(data.mean_body(), read_human(settings.body));
 }
 
-void write_pictures(const Settings& settings, const ErrorSurface& surface, const EvaluationSetup& setup,
+void write_pictures(const EvaluateSettings& settings, const ErrorSurface& surface, const EvaluationSetup& setup,
                     const SplitResult& split) {
     const std::vector<ErrorMap> maps = error_maps(setup, split);
     if (maps.empty()) {
@@ -103,7 +103,7 @@ void write_pictures(const Settings& settings, const ErrorSurface& surface, const
     std::printf("  %s\n", path.c_str());
 }
 
-void evaluate(const Settings& settings) {
+void evaluate(const EvaluateSettings& settings) {
     watch_interrupt();
     const double begin = seconds();
     const ResultFolder results_alone(settings.out);
@@ -140,7 +140,7 @@ void evaluate(const Settings& settings) {
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-    const auto settings = std::make_shared<Settings>();
+    const auto settings = std::make_shared<EvaluateSettings>();
     CLI::App* const command = app.add_subcommand(
         "evaluate",
         "Trained models beside classical methods on samples that no training has seen: tables, errors on the body.");

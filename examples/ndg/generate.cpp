@@ -25,7 +25,7 @@ namespace {
 
 using namespace softtissue;
 
-struct Settings {
+struct GenerateSettings {
     std::string body;
     std::vector<std::string> motions, test_motions;
     std::string scale = "small", out = "ndg_data", shard, json;
@@ -75,7 +75,7 @@ nlohmann::ordered_json definition(const SmplBody<double>& body, const std::vecto
 }
 
 /// Each of several shards writes its own file.
-void write_json(const Settings& settings, const Shard& shard, const DatasetFolder& folder,
+void write_json(const GenerateSettings& settings, const Shard& shard, const DatasetFolder& folder,
                 const GenerationProgress& progress, double elapsed) {
     if (settings.json.empty()) {
         return;
@@ -98,7 +98,7 @@ void write_json(const Settings& settings, const Shard& shard, const DatasetFolde
     file.commit();
 }
 
-void print_outcome(const Settings& settings, const DatasetFolder& folder, const GenerationProgress& progress,
+void print_outcome(const GenerateSettings& settings, const DatasetFolder& folder, const GenerationProgress& progress,
                    double elapsed) {
     std::printf("%s: %td of %td samples, %td failed", settings.out.c_str(), progress.finished, progress.total,
                 progress.failed);
@@ -119,7 +119,7 @@ void print_outcome(const Settings& settings, const DatasetFolder& folder, const 
     }
 }
 
-void generate(const Settings& settings) {
+void generate(const GenerateSettings& settings) {
     const MpiShard mpi;
     const Shard shard = settings.shard.empty() ? mpi.shard() : parse_shard(settings.shard);
     watch_interrupt();
@@ -158,7 +158,7 @@ void generate(const Settings& settings) {
 }  // namespace
 
 void add_generate(CLI::App& app) {
-    const auto settings = std::make_shared<Settings>();
+    const auto settings = std::make_shared<GenerateSettings>();
     DatasetOptions& data = settings->data;
     CLI::App* const command = app.add_subcommand(
         "generate",
