@@ -4,7 +4,7 @@
 ///
 /// What        unit(x) = x / size, original(y) = y size
 /// Shapes      float and double; lane by lane for packs
-/// Valid       every finite size and |x| <= size: sizes below 2^4 times the smallest normal number count as that
+/// Valid       every finite size and |x| <= size, subnormal ones too, zero included
 /// Accuracy    three roundings
 /// Tests       tests/unit/linalg/unit_scale_test.cpp
 #pragma once
@@ -24,20 +24,20 @@ namespace softtissue {
 template <RealLanes Scalar>
 class UnitScale {
 public:
-    explicit UnitScale(const Scalar& size) {
+    explicit UnitScale(const Scalar& size) : size_(size) {
         using std::max;
         using Real = RealOf<Scalar>;
-        // The reciprocal of the largest number would not be normal, and a sixteenth of a small one loses digits.
-        first_ = select(size > Scalar(1), Scalar(Real(1) / Real(16)), Scalar(16));
-        size_ = max(size, Scalar(Real(16) * std::numeric_limits<Real>::min()));
-        second_ = reciprocal(Scalar(size_ * first_));
+        // Exact, and a normal number whose reciprocal is one: the largest size has no such reciprocal, nor has a subnormal one.
+        constexpr Real up = Real(2) / std::numeric_limits<Real>::epsilon(), down = Real(1) / Real(16);
+        first_ = select(size > Scalar(1), Scalar(down), Scalar(up));
+        second_ = reciprocal(max(Scalar(size * first_), Scalar(std::numeric_limits<Real>::min())));
     }
 
     Scalar unit(const Scalar& x) const { return (x * first_) * second_; }
     Scalar original(const Scalar& y) const { return y * size_; }
 
 private:
-    Scalar first_, second_, size_;
+    Scalar size_, first_, second_;
 };
 
 /// The largest size of an entry of the lower triangle.

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -54,6 +56,24 @@ TEST_CASE_TEMPLATE("a lane of a pack is what it is alone among others", S, float
             CHECK(lane(values, i) == lane(alone_values, i));
             CHECK(lane(Q, i) == lane(alone, i));
         }
+    }
+}
+
+TEST_CASE_TEMPLATE("subnormal and huge matrices are decomposed as those of the size of one", S, float, double) {
+    constexpr int N = 9;
+    using Limits = std::numeric_limits<S>;
+    RandomGenerator random(5);
+    Square<S, N> A = random_symmetric<S, N>(random);
+    A = (S(200) * A).array().round();  // subnormal multiples keep every digit
+    Square<S, N> Q = A;
+    const Eigen::Matrix<S, N, 1> values = diagonalise_by_ql(Q);
+    for (const S scale : {Limits::denorm_min(), S(16) * Limits::denorm_min(), Limits::min(), std::ldexp(S(1), 100)}) {
+        CAPTURE(scale);
+        Square<S, N> scaled_Q = scale * A;
+        const Eigen::Matrix<S, N, 1> scaled_values = diagonalise_by_ql(scaled_Q);
+        CHECK(scaled_Q == Q);
+        CHECK((scaled_values - scale * values).cwiseAbs().maxCoeff() <=
+              std::max(Limits::denorm_min(), scale * Limits::epsilon()));
     }
 }
 

@@ -18,22 +18,28 @@ TEST_CASE_TEMPLATE("numbers of any size come to at most 1 and back", S, float, d
     for (const T size : {T(1), T(3), T(1e-20), T(1e20), Limits::min(), Limits::max(), T(16) * Limits::min()}) {
         CAPTURE(size);
         const UnitScale<S> scale{S(size)};
-        const bool is_small = size < T(16) * Limits::min();
         for (const T part : {T(1), T(-0.7), T(0), T(1) / T(3)}) {
             const T x = size * part;
             const T y = lane(scale.unit(S(x)), 0);
             CHECK(std::abs(y) <= T(1) + tolerance);
-            CHECK(std::abs(y - (is_small ? part / T(16) : part)) <= tolerance);
+            CHECK(std::abs(y - part) <= tolerance);
             CHECK(std::abs(lane(scale.original(S(y)), 0) / T(4) - x / T(4)) <= tolerance * size + Limits::denorm_min());
         }
     }
 }
 
-TEST_CASE_TEMPLATE("subnormal numbers keep their digits", S, float, double) {
-    using Limits = std::numeric_limits<S>;
-    const S size = S(37) * Limits::denorm_min();
-    const UnitScale<S> scale(size);
-    CHECK(scale.original(scale.unit(S(21) * Limits::denorm_min())) == S(21) * Limits::denorm_min());
-    CHECK(scale.original(scale.unit(size)) == size);
-    CHECK(UnitScale<S>(S(0)).unit(S(0)) == S(0));
+TEST_CASE_TEMPLATE("subnormal numbers come to 1 as well and keep their digits", S, float, double,
+                   Pack<float, natural_lanes<float>>, Pack<double, natural_lanes<double>>) {
+    using T = RealOf<S>;
+    constexpr T unit = std::numeric_limits<T>::denorm_min();
+    for (const int size : {1, 2, 37, 1000}) {
+        CAPTURE(size);
+        const UnitScale<S> scale{S(T(size) * unit)};
+        for (const int part : {0, 1, -size / 2, size}) {
+            const S y = scale.unit(S(T(part) * unit));
+            CHECK(std::abs(lane(y, 0) - T(part) / T(size)) <= T(4) * std::numeric_limits<T>::epsilon());
+            CHECK(lane(scale.original(y), 0) == T(part) * unit);
+        }
+    }
+    CHECK(lane(UnitScale<S>(S(0)).unit(S(0)), 0) == T(0));
 }
