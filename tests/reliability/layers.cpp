@@ -9,7 +9,9 @@
 
 #include <support/limb_model.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,7 @@ void pose_layers(Ledger& ledger, Limb& limb, long count, std::uint64_t seed) {
     for (const AnimationMethod method : all_animation_methods) {
         Tally& tally = ledger.begin(std::string("layered limb by ") + to_string(method));
         tally.rest_tolerance = 1e-6;
+        tally.must_recover = true;
         Matrix3X<double> x;
         for (long k = 0; k < count; ++k) {
             RandomGenerator random(seed + std::uint64_t(k));
@@ -44,16 +47,24 @@ void pose_layers(Ledger& ledger, Limb& limb, long count, std::uint64_t seed) {
             tally.attempt([&] {
                 Outcome outcome = outcome_of(limb.animation.pose_into(method, transforms, x), x);
                 if (method == AnimationMethod::fem) {
-                    // back to rest, from where the flesh was
-                    Matrix3X<double> back = x;
+                    // The first bone goes home with all flesh, the other at once from where it is then.
+                    const double size = 0.4;
                     const Matrix3X<double>& rest = limb.limb.body.mesh.rest_positions;
+                    const AffineTransform<double> home = transforms[0].inverse();
+                    Matrix3X<double> back = x;
+                    for (Index v = 0; v < back.cols(); ++v) {
+                        back.col(v) = home(x.col(v));
+                    }
+                    double jump = 0;
                     for (const std::int32_t v : limb.limb.body.prescribed) {
+                        jump = std::max(jump, (back.col(v) - rest.col(v)).norm());
                         back.col(v) = rest.col(v);
                     }
                     const SolveReport<double> report =
                         limb.animation.flesh().solve_into(back, {.max_iterations = 200, .linear_tolerance = 1e-6});
                     outcome.has_rest = report.succeeded();
-                    outcome.distance = (back - rest).colwise().norm().maxCoeff() / 0.4;
+                    outcome.may_stay = !(jump < size / 2);
+                    outcome.distance = (back - rest).colwise().norm().maxCoeff() / size;
                     outcome.is_finite = outcome.is_finite && back.allFinite();
                 }
                 return outcome;
