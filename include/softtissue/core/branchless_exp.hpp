@@ -54,7 +54,7 @@ Pack<T, N> power_of_two(const Pack<T, N>& k) {
         result.lanes = std::bit_cast<typename Pack<T, N>::Lanes>(biased << Bits::mantissa);
         return result;
     } else {
-        return Pack<T, N>::map_lanes([](T a) { return power_of_two(a); }, k);
+        return Pack<T, N>::map_parts([](const auto& a) { return power_of_two(a); }, k);
     }
 }
 

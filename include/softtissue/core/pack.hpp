@@ -4,7 +4,8 @@
 ///
 /// What        Pack<T, N>: arithmetic, comparisons that give masks, select(); usable as an Eigen scalar
 /// Equation    every operation acts lane by lane, (a + b)[i] = a[i] + b[i]: a lane never depends on the others
-/// Width       natural_lanes<T> fill a register. Wider packs are plain arrays: right, but not fast.
+/// Width       natural_lanes<T> fill a register. A multiple of that is as many registers: for formulas whose every step waits for
+///             the one before, which the processor then computes side by side. Other widths are plain arrays: right, but not fast.
 /// Branching   a comparison gives a PackMask; `&`, `|`, `!` combine masks, select(mask, a, b) chooses, any_of() and all_of()
 ///             ask. There is no plain value: FieldScalar, RealLanes, not HasPlainValue.
 /// Tests       tests/unit/core/pack_test.cpp
@@ -28,7 +29,8 @@ struct Pack {
     static_assert(N > 0, "a pack has at least one lane");
     static constexpr bool is_vector = detail::fits_register<T, N>;
     using Mask = PackMask<T, N>;
-    using Lanes = typename detail::LaneStorage<T, N, is_vector>::Values;
+    static constexpr bool is_several = detail::fills_registers<T, N>;
+    using Lanes = typename detail::LaneStorage<T, N>::Values;
 
     Lanes lanes;
 
@@ -48,11 +50,23 @@ struct Pack {
     /// N numbers in memory, of any alignment.
     [[gnu::always_inline]] static inline Pack load(const T* numbers) {
         Pack result;
-        std::memcpy(&result.lanes, numbers, sizeof(T) * std::size_t(N));
+        if constexpr (is_several) {  // register by register: compilers call a routine for more than one
+            for (std::size_t i = 0; i < result.lanes.size(); ++i) {
+                result.lanes[i] = Pack<T, natural_lanes<T>>::load(numbers + i * std::size_t(natural_lanes<T>));
+            }
+        } else {
+            std::memcpy(&result.lanes, numbers, sizeof(T) * std::size_t(N));
+        }
         return result;
     }
     [[gnu::always_inline]] inline void store(T* numbers) const {
-        std::memcpy(numbers, &lanes, sizeof(T) * std::size_t(N));
+        if constexpr (is_several) {
+            for (std::size_t i = 0; i < lanes.size(); ++i) {
+                lanes[i].store(numbers + i * std::size_t(natural_lanes<T>));
+            }
+        } else {
+            std::memcpy(numbers, &lanes, sizeof(T) * std::size_t(N));
+        }
     }
 
     /// lane_value(i) in lane i.
@@ -65,50 +79,60 @@ struct Pack {
         return load(numbers.data());
     }
 
-    T operator[](int i) const { return lanes[std::size_t(i)]; }
+    T operator[](int i) const {
+        if constexpr (is_several) {
+            return lanes[std::size_t(i / natural_lanes<T>)][i % natural_lanes<T>];
+        } else {
+            return lanes[std::size_t(i)];
+        }
+    }
 
-    Pack& operator+=(const Pack& b) { return *this = *this + b; }
-    Pack& operator-=(const Pack& b) { return *this = *this - b; }
-    Pack& operator*=(const Pack& b) { return *this = *this * b; }
-    Pack& operator/=(const Pack& b) { return *this = *this / b; }
+    [[gnu::always_inline]] inline Pack& operator+=(const Pack& b) { return *this = *this + b; }
+    [[gnu::always_inline]] inline Pack& operator-=(const Pack& b) { return *this = *this - b; }
+    [[gnu::always_inline]] inline Pack& operator*=(const Pack& b) { return *this = *this * b; }
+    [[gnu::always_inline]] inline Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
-    friend Pack operator+(const Pack& a) { return a; }
-    friend Pack operator-(const Pack& a) {
+    [[gnu::always_inline]] friend inline Pack operator+(const Pack& a) { return a; }
+    [[gnu::always_inline]] friend inline Pack operator-(const Pack& a) {
         return map([](const auto& x) { return -x; }, a);
     }
-    friend Pack operator+(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Pack operator+(const Pack& a, const Pack& b) {
         return map([](const auto& x, const auto& y) { return x + y; }, a, b);
     }
-    friend Pack operator-(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Pack operator-(const Pack& a, const Pack& b) {
         return map([](const auto& x, const auto& y) { return x - y; }, a, b);
     }
-    friend Pack operator*(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Pack operator*(const Pack& a, const Pack& b) {
         return map([](const auto& x, const auto& y) { return x * y; }, a, b);
     }
-    friend Pack operator/(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Pack operator/(const Pack& a, const Pack& b) {
         return map([](const auto& x, const auto& y) { return x / y; }, a, b);
     }
 
-    friend Mask operator<(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Mask operator<(const Pack& a, const Pack& b) {
         return Mask::map([](const auto& x, const auto& y) { return x < y; }, a, b);
     }
-    friend Mask operator<=(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Mask operator<=(const Pack& a, const Pack& b) {
         return Mask::map([](const auto& x, const auto& y) { return x <= y; }, a, b);
     }
-    friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
-    friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
-    friend Mask operator==(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+    [[gnu::always_inline]] friend inline Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
+    [[gnu::always_inline]] friend inline Mask operator==(const Pack& a, const Pack& b) {
         return Mask::map([](const auto& x, const auto& y) { return x == y; }, a, b);
     }
-    friend Mask operator!=(const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Mask operator!=(const Pack& a, const Pack& b) {
         return Mask::map([](const auto& x, const auto& y) { return x != y; }, a, b);
     }
 
     /// a where the mask holds, b elsewhere.
-    friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
+    [[gnu::always_inline]] friend inline Pack select(const Mask& mask, const Pack& a, const Pack& b) {
         Pack result;
         if constexpr (is_vector) {
             result.lanes = mask.lanes ? a.lanes : b.lanes;
+        } else if constexpr (is_several) {
+            for (std::size_t i = 0; i < result.lanes.size(); ++i) {
+                result.lanes[i] = select(mask.lanes[i], a.lanes[i], b.lanes[i]);
+            }
         } else {
             for (std::size_t i = 0; i < std::size_t(N); ++i) {
                 result.lanes[i] = mask.lanes[i] ? a.lanes[i] : b.lanes[i];
@@ -120,13 +144,24 @@ struct Pack {
     /// f of the registers, or of each lane.
     template <class F, class... Operands>
     [[gnu::always_inline]] static inline Pack map(const F& f, const Operands&... operands) {
-        Pack result;
         if constexpr (is_vector) {
+            Pack result;
             result.lanes = f(operands.lanes...);
+            return result;
+        } else if constexpr (is_several) {
+            return map_parts([&f](const auto&... parts) { return Pack<T, natural_lanes<T>>::map(f, parts...); },
+                             operands...);
         } else {
-            for (std::size_t i = 0; i < std::size_t(N); ++i) {
-                result.lanes[i] = f(operands.lanes[i]...);
-            }
+            return map_parts(f, operands...);
+        }
+    }
+
+    /// f of each pack that fills a register, or of each lane, where this is not one register.
+    template <class F, class... Operands>
+    [[gnu::always_inline]] static inline Pack map_parts(const F& f, const Operands&... operands) {
+        Pack result;
+        for (std::size_t i = 0; i < result.lanes.size(); ++i) {
+            result.lanes[i] = f(operands.lanes[i]...);
         }
         return result;
     }

@@ -11,6 +11,7 @@
 #include <softtissue/core/scalar.hpp>
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 
 #if defined(__AVX2__)
@@ -21,6 +22,14 @@ namespace softtissue {
 
 template <int N, RealScalar T>
 Pack<T, N> gather(const T* numbers, const std::int32_t* places) {
+    if constexpr (Pack<T, N>::is_several) {
+        constexpr int width = natural_lanes<T>;
+        Pack<T, N> result;
+        for (std::size_t i = 0; i < result.lanes.size(); ++i) {
+            result.lanes[i] = gather<width>(numbers, places + i * std::size_t(width));
+        }
+        return result;
+    }
     // With a mask of ones: gcc takes the unused operand of the plain form for an uninitialised variable.
 #if defined(__AVX512F__)
     if constexpr (Pack<T, N>::is_vector && std::same_as<T, float> && N == 16) {

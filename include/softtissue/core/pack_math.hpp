@@ -57,7 +57,7 @@ inline __m512d register_sqrt(__m512d x) {
 
 /// The sign bits of `signs` on the magnitudes of x.
 template <class T, int N>
-Pack<T, N> with_sign_bits(const Pack<T, N>& x, const Pack<T, N>& signs, bool is_kept) {
+[[gnu::always_inline]] inline Pack<T, N> with_sign_bits(const Pack<T, N>& x, const Pack<T, N>& signs, bool is_kept) {
     using Words = decltype(Pack<T, N>::Mask::lanes);
     const auto sign = std::bit_cast<Words>(Pack<T, N>(T(-0.0)).lanes);
     const auto magnitude = std::bit_cast<Words>(x.lanes) & ~sign;
@@ -70,35 +70,38 @@ Pack<T, N> with_sign_bits(const Pack<T, N>& x, const Pack<T, N>& signs, bool is_
 }  // namespace detail
 
 template <class T, int N>
-Pack<T, N> abs(const Pack<T, N>& x) {
+[[gnu::always_inline]] inline Pack<T, N> abs(const Pack<T, N>& x) {
+    using std::abs;
     if constexpr (Pack<T, N>::is_vector) {
         return detail::with_sign_bits(x, x, false);
     } else {
-        return Pack<T, N>::map_lanes([](T a) { return std::abs(a); }, x);
+        return Pack<T, N>::map_parts([](const auto& a) { return abs(a); }, x);
     }
 }
 
 template <class T, int N>
-Pack<T, N> copysign(const Pack<T, N>& x, const Pack<T, N>& sign) {
+[[gnu::always_inline]] inline Pack<T, N> copysign(const Pack<T, N>& x, const Pack<T, N>& sign) {
+    using std::copysign;
     if constexpr (Pack<T, N>::is_vector) {
         return detail::with_sign_bits(x, sign, true);
     } else {
-        return Pack<T, N>::map_lanes([](T a, T b) { return std::copysign(a, b); }, x, sign);
+        return Pack<T, N>::map_parts([](const auto& a, const auto& b) { return copysign(a, b); }, x, sign);
     }
 }
 
 template <class T, int N>
-Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
+[[gnu::always_inline]] inline Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
     return select(b < a, b, a);
 }
 
 template <class T, int N>
-Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
+[[gnu::always_inline]] inline Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
     return select(a < b, b, a);
 }
 
 template <class T, int N>
-Pack<T, N> sqrt(const Pack<T, N>& x) {
+[[gnu::always_inline]] inline Pack<T, N> sqrt(const Pack<T, N>& x) {
+    using std::sqrt;
 #if defined(__SSE2__)
     if constexpr (Pack<T, N>::is_vector && sizeof(Pack<T, N>) >= 16) {
         Pack<T, N> result;
@@ -106,7 +109,11 @@ Pack<T, N> sqrt(const Pack<T, N>& x) {
         return result;
     }
 #endif
-    return Pack<T, N>::map_lanes([](T a) { return std::sqrt(a); }, x);
+    if constexpr (Pack<T, N>::is_vector) {
+        return Pack<T, N>::map_lanes([](T a) { return std::sqrt(a); }, x);
+    } else {
+        return Pack<T, N>::map_parts([](const auto& a) { return sqrt(a); }, x);
+    }
 }
 
 template <class T, int N>

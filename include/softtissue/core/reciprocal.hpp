@@ -61,8 +61,11 @@ inline __m512d reciprocal_sqrt_estimate(__m512d x) {
 #endif
 
 template <class T, int N>
-Pack<T, N> reciprocal(const Pack<T, N>& x) {
+[[gnu::always_inline]] inline Pack<T, N> reciprocal(const Pack<T, N>& x) {
     using P = Pack<T, N>;
+    if constexpr (P::is_several) {
+        return P::map_parts([](const auto& part) { return reciprocal(part); }, x);
+    }
     const P one(1);
 #if defined(__AVX512F__)
     if constexpr (P::is_vector && sizeof(P) == sizeof(__m512)) {
@@ -82,8 +85,11 @@ Pack<T, N> reciprocal(const Pack<T, N>& x) {
 }
 
 template <class T, int N>
-Pack<T, N> reciprocal_sqrt(const Pack<T, N>& x) {
+[[gnu::always_inline]] inline Pack<T, N> reciprocal_sqrt(const Pack<T, N>& x) {
     using P = Pack<T, N>;
+    if constexpr (P::is_several) {
+        return P::map_parts([](const auto& part) { return reciprocal_sqrt(part); }, x);
+    }
     const P one(1);
 #if defined(__AVX512F__)
     if constexpr (P::is_vector && sizeof(P) == sizeof(__m512)) {
@@ -103,7 +109,10 @@ Pack<T, N> reciprocal_sqrt(const Pack<T, N>& x) {
 }
 
 template <class T, int N>
-Pack<T, N> quick_sqrt(const Pack<T, N>& x) {
+[[gnu::always_inline]] inline Pack<T, N> quick_sqrt(const Pack<T, N>& x) {
+    if constexpr (Pack<T, N>::is_several) {
+        return Pack<T, N>::map_parts([](const auto& part) { return quick_sqrt(part); }, x);
+    }
 #if defined(__AVX512F__)
     if constexpr (Pack<T, N>::is_vector && sizeof(Pack<T, N>) == sizeof(__m512)) {
         const Pack<T, N> zero(0), infinity(std::numeric_limits<T>::infinity());

@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    using Register = typename LaneStorage<S, int(N), true>::Values;
+    using Register = typename LaneStorage<S, int(N)>::Values;
     using Lanes = std::make_index_sequence<N>;
 
     /// 1 / N modulo 9

@@ -96,7 +96,7 @@ template <FieldScalar S>
 
 /// Rotation matrix of a unit quaternion.
 template <FieldScalar S>
-Matrix3<S> rotation_matrix_from_quaternion(const Quaternion<S>& q) {
+[[gnu::always_inline]] inline Matrix3<S> rotation_matrix_from_quaternion(const Quaternion<S>& q) {
     return rotation_matrix_from_scaled_quaternions<S>(q, S(2) * q);
 }
 

@@ -7,7 +7,7 @@
 /// Shapes      gradients, rotations 3 x 3n: matrix c in the columns 3c to 3c + 2; they may be the same array.
 ///             quaternions n x 4 (w, x, y, z)
 /// Valid       every finite F; see linalg/polar.hpp for where R is not unique
-/// Packs       as many matrices at a time as a register has lanes; none depends on its neighbours
+/// Packs       as many matrices at a time as three registers have lanes; none depends on its neighbours
 /// Source      Bouaziz et al. 2014; Komaritzan & Botsch 2018
 /// Cost        polar.hpp
 /// Tests       tests/unit/linalg/rotation_fit_test.cpp
@@ -64,6 +64,10 @@ void store_quaternions(const Quaternion<Pack<S, N>>& packed, Index first, Quater
 
 namespace detail {
 
+/// What a step of Newton's method computes waits for itself: three registers' worth keep the processor as busy as it gets.
+template <RealScalar S>
+inline constexpr int matrices_at_a_time = natural_lanes<S> > 1 ? 3 * natural_lanes<S> : 1;
+
 template <RealScalar S>
 Index num_matrices(const Matrix3X<S>& gradients) {
     require(gradients.cols() % 3 == 0, "rotation fit: ", gradients.cols(), " columns, expected three per matrix");
@@ -75,7 +79,7 @@ Index num_matrices(const Matrix3X<S>& gradients) {
 /// Writes one rotation per matrix; allocates nothing. Same bits for every executor.
 template <RealScalar S, Executor E = SequentialExecutor>
 void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, const E& executor = {}) {
-    constexpr int N = natural_lanes<S>;
+    constexpr int N = detail::matrices_at_a_time<S>;
     const Index count = detail::num_matrices(gradients);
     rotations.resize(3, gradients.cols());
     executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
@@ -89,7 +93,7 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, co
 template <RealScalar S, Executor E = SequentialExecutor>
 void fit_rotations_into(const Matrix3X<S>& gradients, Quaternions<S>& quaternions, Matrix3X<S>& rotations,
                         const E& executor = {}) {
-    constexpr int N = natural_lanes<S>;
+    constexpr int N = detail::matrices_at_a_time<S>;
     const Index count = detail::num_matrices(gradients);
     require(quaternions.rows() == count, "rotation fit: ", quaternions.rows(), " quaternions, expected ", count);
     rotations.resize(3, gradients.cols());

@@ -25,14 +25,36 @@ TEST_CASE_TEMPLATE("from a few degrees every state is reached, inverted ones too
     }
 }
 
-TEST_CASE_TEMPLATE("two steps from two degrees, three in double", S, float, double) {
+TEST_CASE_TEMPLATE("two steps from two degrees, to the last digits", S, float, double) {
     RandomGenerator random(2);
     for (int repeat = 0; repeat < 20; ++repeat) {
         const Matrix3<S> F = random_state<S>(StateClass::small_strain, random);
         const Vector3<S> turn = S(0.035) * random_unit<Vector3<S>>(random);
-        Quaternion<S> q =
-            quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) * polar_rotation(svd3(F)));
-        CHECK(refine_rotation(F, q, std::is_same_v<S, float> ? 2 : 3));
+        const Matrix3<S> R = polar_rotation(svd3(F));
+        Quaternion<S> q = quaternion_from_rotation_matrix<S>(rotation_matrix_from_rotation_vector<S>(turn) * R);
+        CHECK(refine_rotation(F, q, 2));
+        CHECK((rotation_matrix_from_quaternion(q) - R).norm() < S(20) * std::numeric_limits<S>::epsilon());
+    }
+}
+
+TEST_CASE("a step leaves no more than its cube over the smallest resistance to turning") {
+    RandomGenerator random(5);
+    for (const double gap : {1.9, 1.0, 0.3, 0.05, 0.02}) {
+        for (int repeat = 0; repeat < 50; ++repeat) {
+            const double middle = gap / 2 + (1 - gap / 2) * random.uniform();
+            const Vector3<double> sigma(1, middle, gap - middle);
+            const Matrix3<double> V = random_rotation<double>(random), U = random_rotation<double>(random);
+            const Matrix3<double> F = U * sigma.asDiagonal() * V.transpose(), R = U * V.transpose();
+            const double angle = 3e-3 * gap;
+            const Vector3<double> turn = angle * random_unit<Vector3<double>>(random);
+            Quaternion<double> q =
+                quaternion_from_rotation_matrix<double>(rotation_matrix_from_rotation_vector<double>(turn) * R);
+            refine_rotation(F, q, 1);
+            const Vector3<double> left =
+                rotation_vector_from_rotation_matrix<double>(rotation_matrix_from_quaternion(q) * R.transpose());
+            CHECK(left.norm() <=
+                  0.25 * angle * angle * angle / gap * 1.05 + 20 * std::numeric_limits<double>::epsilon() / gap);
+        }
     }
 }
 
