@@ -55,7 +55,7 @@ struct PackMask;
 namespace detail {
 
 template <class T, int N>
-inline constexpr bool fills_registers = natural_lanes<T> > 1 && N > natural_lanes<T>&& N % natural_lanes<T> == 0;
+inline constexpr bool fills_registers = natural_lanes<T> > 1 && N / natural_lanes<T> > 1 && N % natural_lanes<T> == 0;
 
 /// One register, several, or a number after the other.
 template <class T, int N>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// 3x3 matrices in plain arithmetic, one or sixteen at a time: compilers turn sixteen into lanes.
+/// 3x3 matrices in plain arithmetic, one or 32 at a time: compilers turn those into lanes.
 ///
-/// What        Matrix3Entries: nine numbers, entrywise() and product(); Matrix3Lanes: sixteen matrices, entry by entry;
-///             for_each_lane_block: a loop over the columns of a 9 x n array, sixteen at a time
+/// What        Matrix3Entries: nine numbers, entrywise() and product(); Matrix3Lanes: 32 matrices, entry by entry;
+///             for_each_lane_block: a loop over the columns of a 9 x n array, 32 at a time
 /// Shapes      nine entries row after row, or column after column, as long as all are alike
 /// Why         a loop over lanes whose body is straight arithmetic on Matrix3Entries vectorises; one over Eigen's does not
 /// Threads     the same blocks for every executor
@@ -42,7 +42,7 @@ Matrix3Entries<S> product(const Matrix3Entries<S>& a, const Matrix3Entries<S>& b
 
 template <class S>
 struct Matrix3Lanes {
-    static constexpr Index lanes = 16;
+    static constexpr Index lanes = 32;
     alignas(64) S e[9][lanes];
 
     /// `count` columns of a 9 x n array that lie `stride` apart, and zeros for the other lanes.
@@ -86,7 +86,7 @@ struct Matrix3Lanes {
     }
 };
 
-/// body(first column, number of columns) for blocks of at most sixteen columns.
+/// body(first column, number of columns) for blocks of at most 32 columns.
 template <class E, class Body>
 void for_each_lane_block(const E& executor, Index columns, const Body& body) {
     constexpr Index lanes = Matrix3Lanes<float>::lanes;

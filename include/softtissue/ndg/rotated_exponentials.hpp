@@ -2,7 +2,7 @@
 /// @file
 /// From what a network predicts of every cell to its target gradient, in one pass over the cells.
 ///
-/// What        exponential, blended rotation and their product, sixteen cells at a time
+/// What        exponential, blended rotation and their product, 32 cells at a time
 /// Equation    F_p^res = exp(Q_p),  T_p = R_p F_p^res,  R_p the blended rotation of the bones
 /// Shapes      Q and residuals 9 x cells, a 3x3 a column, row after row (as PyTorch flattens it); bones: one unit quaternion
 ///             a joint; targets 3 x 3 cells (T_p in columns 3p to 3p + 2)
@@ -30,7 +30,7 @@ namespace softtissue {
 
 namespace detail {
 
-/// R F of sixteen cells, R of quaternions by components; entries column after column.
+/// R F of 32 cells, R of quaternions by components; entries column after column.
 template <RealScalar N, RealScalar S>
 void rotate_lanes(const S (&quaternions)[4][Matrix3Lanes<S>::lanes], const Matrix3Lanes<N>& F, Matrix3Lanes<S>& T) {
     using Lanes = Pack<S, natural_lanes<S>>;

@@ -66,8 +66,8 @@ TEST_CASE("lanes are set and transposed") {
     }
 }
 
-TEST_CASE("every column is in one block of at most sixteen") {
-    for (const Index columns : {0, 1, 16, 17, 100}) {
+TEST_CASE("every column is in one block of at most 32") {
+    for (const Index columns : {0, 1, 32, 33, 100}) {
         std::vector<int> visits(size_t(columns), 0);
         for_each_lane_block(ThreadExecutor(3), columns, [&](Index first, Index count) {
             for (Index column = first; column < first + count; ++column) {
