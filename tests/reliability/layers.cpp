@@ -63,7 +63,9 @@ void pose_layers(Ledger& ledger, Limb& limb, long count, std::uint64_t seed) {
                     const SolveReport<double> report =
                         limb.animation.flesh().solve_into(back, {.max_iterations = 200, .linear_tolerance = 1e-6});
                     outcome.has_rest = report.succeeded();
-                    outcome.may_stay = !(jump < size / 2);
+                    // Half a turn of a bone about itself winds the flesh up as much as one across moves it.
+                    const double cosine = ((home * transforms[1]).linear.trace() - 1) / 2;
+                    outcome.may_stay = !(jump < size / 2 && cosine > 0);
                     outcome.distance = (back - rest).colwise().norm().maxCoeff() / size;
                     outcome.is_finite = outcome.is_finite && back.allFinite();
                 }

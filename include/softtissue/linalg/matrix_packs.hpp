@@ -2,7 +2,8 @@
 /// @file
 /// 3x3 matrices of an array in the lanes of one matrix of packs, and back.
 ///
-/// What        load_matrices<N>(): matrices `first` to `first + N - 1`; store_matrices<N>() writes them
+/// What        load_matrices<N>(): matrices `first` to `first + N - 1`; store_matrices<N>() writes them;
+///             side_by_side<count>(): those of several packs in one of as many registers
 /// Shapes      3 x 3n: matrix c in the columns 3c to 3c + 2. Lanes beyond the last matrix repeat it and are not written.
 /// Cost        nine_number_lanes.hpp
 /// Tests       tests/unit/linalg/matrix_packs_test.cpp
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 
 namespace softtissue {
 
@@ -53,6 +55,25 @@ void store_matrices(const Matrix3<Pack<S, N>>& packed, Index first, Matrix3X<S>&
         S padded[9 * std::size_t(N)];
         lanes_to_columns(lanes, padded);
         std::copy_n(padded, 9 * count, columns);
+    }
+}
+
+/// The lanes of part(0), then those of part(1), ...; each part a Matrix3 of packs that fill a register.
+template <int count, class F>
+auto side_by_side(const F& part) {
+    using Part = std::remove_cvref_t<decltype(part(0))>;
+    if constexpr (count == 1) {
+        return Part(part(0));
+    } else {
+        using Lanes = typename Part::Scalar;
+        Matrix3<Pack<RealOf<Lanes>, count * num_lanes<Lanes>>> result;
+        for (int k = 0; k < count; ++k) {
+            const Part matrices = part(k);
+            for (int i = 0; i < 9; ++i) {
+                result.data()[i].lanes[std::size_t(k)] = matrices.data()[i];
+            }
+        }
+        return result;
     }
 }
 

@@ -62,11 +62,11 @@ void store_quaternions(const Quaternion<Pack<S, N>>& packed, Index first, Quater
     }
 }
 
-namespace detail {
-
 /// What a step of Newton's method computes waits for itself: three registers' worth keep the processor as busy as it gets.
 template <RealScalar S>
-inline constexpr int matrices_at_a_time = natural_lanes<S> > 1 ? 3 * natural_lanes<S> : 1;
+inline constexpr int rotation_fit_registers = natural_lanes<S> > 1 ? 3 : 1;
+
+namespace detail {
 
 template <RealScalar S>
 Index num_matrices(const Matrix3X<S>& gradients) {
@@ -79,7 +79,7 @@ Index num_matrices(const Matrix3X<S>& gradients) {
 /// Writes one rotation per matrix; allocates nothing. Same bits for every executor.
 template <RealScalar S, Executor E = SequentialExecutor>
 void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, const E& executor = {}) {
-    constexpr int N = detail::matrices_at_a_time<S>;
+    constexpr int N = rotation_fit_registers<S> * natural_lanes<S>;
     const Index count = detail::num_matrices(gradients);
     rotations.resize(3, gradients.cols());
     executor.for_each_range((count + N - 1) / N, [&](Index begin, Index end) {
@@ -93,7 +93,7 @@ void fit_rotations_into(const Matrix3X<S>& gradients, Matrix3X<S>& rotations, co
 template <RealScalar S, Executor E = SequentialExecutor>
 void fit_rotations_into(const Matrix3X<S>& gradients, Quaternions<S>& quaternions, Matrix3X<S>& rotations,
                         const E& executor = {}) {
-    constexpr int N = detail::matrices_at_a_time<S>;
+    constexpr int N = rotation_fit_registers<S> * natural_lanes<S>;
     const Index count = detail::num_matrices(gradients);
     require(quaternions.rows() == count, "rotation fit: ", quaternions.rows(), " quaternions, expected ", count);
     rotations.resize(3, gradients.cols());

@@ -75,15 +75,16 @@ private:
     /// Rotations of the first iteration start anew, the others where the last one ended: a result does not depend on former ones.
     template <Executor E>
     void fit_targets(const Matrix3X<Scalar>& x, bool is_first, const E& executor) {
-        constexpr int N = natural_lanes<Scalar>;
+        constexpr int registers = rotation_fit_registers<Scalar>, N = registers * natural_lanes<Scalar>;
         using Lanes = Pack<Scalar, N>;
         quaternions_.resize(poisson_->num_cells(), 4);
-        poisson_->mapped_gradients_into(x, targets_, executor, [&](Index first, const Matrix3<Lanes>& F) {
-            Quaternion<Lanes> q = is_first ? rotation_start(F) : load_quaternions<N>(quaternions_, first);
-            const Matrix3<Lanes> R = polar_rotation(F, q);
-            store_quaternions<N>(q, first, quaternions_);
-            return R;
-        });
+        poisson_->template mapped_gradients_into<registers>(
+            x, targets_, executor, [&](Index first, const Matrix3<Lanes>& F) {
+                Quaternion<Lanes> q = is_first ? rotation_start(F) : load_quaternions<N>(quaternions_, first);
+                const Matrix3<Lanes> R = polar_rotation(F, q);
+                store_quaternions<N>(q, first, quaternions_);
+                return R;
+            });
     }
 
     PoissonReconstruction<ElementType, Scalar>* poisson_;

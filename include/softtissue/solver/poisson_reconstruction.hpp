@@ -33,6 +33,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -71,16 +72,18 @@ public:
     }
 
     /// map(first, F) of the gradients F of cells `first`, `first + 1`, ... side by side, without a detour through memory; both
-    /// Matrix3<Pack>, lanes beyond the last cell repeat it.
-    template <Executor E, class Map>
+    /// Matrix3<Pack> of so many registers, lanes beyond the last cell repeat it.
+    template <int registers = 1, Executor E, class Map>
     void mapped_gradients_into(const Matrix3X<Scalar>& x, Matrix3X<Scalar>& result, const E& executor,
                                const Map& map) const {
         require_positions(x);
         result.resize(3, 3 * num_cells());
-        executor.for_each_range(packs_.num_packs(), [&](Index begin, Index end) {
-            for (Index p = begin; p < end; ++p) {
-                const Index first = Packs::width * p;
-                store_matrices<Packs::width>(map(first, gradients(x, p)), first, result);
+        const Index last = packs_.num_packs() - 1;
+        executor.for_each_range((last + registers) / registers, [&](Index begin, Index end) {
+            for (Index group = begin; group < end; ++group) {
+                const Index p = registers * group, first = Packs::width * p;
+                const auto F = side_by_side<registers>([&](int k) { return gradients(x, std::min(p + k, last)); });
+                store_matrices<registers * Packs::width>(map(first, F), first, result);
             }
         });
     }

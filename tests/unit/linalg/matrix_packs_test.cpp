@@ -23,3 +23,16 @@ TEST_CASE_TEMPLATE("there and back, lanes beyond the last matrix repeat it", S, 
         CHECK(back == matrices);
     }
 }
+
+TEST_CASE_TEMPLATE("packs side by side keep their lanes", S, float, double) {
+    constexpr int N = natural_lanes<S>, count = N > 1 ? 3 : 1;
+    Matrix3X<S> matrices(3, 3 * N * count);
+    for (Index k = 0; k < matrices.size(); ++k) {
+        matrices.data()[k] = S(k);
+    }
+    const auto joined = side_by_side<count>([&](int k) { return load_matrices<N>(matrices, N * k); });
+    static_assert(num_lanes<typename decltype(joined)::Scalar> == N * count);
+    for (int i = 0; i < N * count; ++i) {
+        CHECK(lane(joined, i) == matrices.template middleCols<3>(3 * i));
+    }
+}
