@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 using namespace softtissue;
 using namespace softtissue_test;
@@ -36,13 +37,14 @@ Square<S, N> product(int first, const Eigen::Matrix<S, N, 1>& cosines, const Eig
 TEST_CASE_TEMPLATE("an eigenvalue comes to the top, and the rest keeps the others", S, float, double) {
     RandomGenerator random(1);
     const S tolerance = S(64) * std::numeric_limits<S>::epsilon();
+    using Wide = std::conditional_t<std::is_same_v<S, float>, double, long double>;
     int done = 0, tried = 0;
     for (const Square<S, N>& A : hard_matrices<S, N>(random)) {
         CAPTURE(A);
         TridiagonalForm<S, N> T(A);
         const Square<S, N> before = tridiagonal<S, N>(T.diagonal, T.below);
-        Square<S, N> Q = before;
-        const S eigenvalue = diagonalise_by_ql(Q).minCoeff();
+        Square<Wide, N> Q = before.template cast<Wide>();
+        const S eigenvalue = S(diagonalise_by_ql(Q).minCoeff());
         Eigen::Matrix<S, N, 1> cosines, sines;
         const bool is_done = deflate(true, eigenvalue, 0, T.diagonal, T.below, cosines, sines);
         const Square<S, N> G = product<S>(0, cosines, sines);
@@ -57,7 +59,7 @@ TEST_CASE_TEMPLATE("an eigenvalue comes to the top, and the rest keeps the other
         done += is_done;
         ++tried;
     }
-    CHECK(done > tried * 3 / 4);  // the eigenvalues above are not all good to four epsilon
+    CHECK(done > tried * 19 / 20);
 }
 
 TEST_CASE_TEMPLATE("of a part of the rows", S, float, double) {
