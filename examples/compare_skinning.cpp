@@ -135,8 +135,9 @@ static int run(const std::string& out) {
         for (Index v = 0; v < colors.cols(); ++v) {
             colors.col(v) = examples::scale_color(each.difference(v) / largest_difference);
         }
-        const Vector3<double> center(0.0, 0.9, 0.0);
-        picture.mesh(each.posed.positions, body.faces, colors, view, center, 300.0, 380 * column, 50, 380, 560);
+        const auto& x = each.posed.positions;
+        const Vector3<double> center = 0.5 * (x.rowwise().minCoeff() + x.rowwise().maxCoeff());
+        picture.mesh(x, body.faces, colors, view, center, 300.0, 380 * column, 50, 380, 560);
         picture.text(each.name, 380 * column + 190, 34, 22, 0.5);
         ++column;
     }
