@@ -27,9 +27,9 @@ namespace softtissue {
 template <RealScalar T, int N>
 struct Pack {
     static_assert(N > 0, "a pack has at least one lane");
-    static constexpr bool is_vector = detail::fits_register<T, N>;
+    static constexpr bool is_vector = detail::fits_register<T, N>;     ///< one register
+    static constexpr bool is_several = detail::fills_registers<T, N>;  ///< several, each a Pack of its own
     using Mask = PackMask<T, N>;
-    static constexpr bool is_several = detail::fills_registers<T, N>;
     using Lanes = typename detail::LaneStorage<T, N>::Values;
 
     Lanes lanes;
