@@ -51,7 +51,8 @@ template <RealLanes Scalar, int N, class Mask, class Rotate>
 void ql_step(const Mask& is_active, int first, const Scalar& shift, Eigen::Matrix<Scalar, N, 1>& diagonal,
              Eigen::Matrix<Scalar, N, 1>& below, const Rotate& rotate) {
     const Scalar zero(0), one(1);
-    const Scalar smallest(std::numeric_limits<RealOf<Scalar>>::min());
+    using Limits = std::numeric_limits<RealOf<Scalar>>;
+    const Scalar smallest(Limits::min() / Limits::epsilon());  // below it squares have no digits
     Scalar s = one, c = one, p = zero, g = zero;
     auto is_inside = one < zero;  // a block that began below
     for (int i = N - 2; i >= first; --i) {

@@ -8,7 +8,8 @@
 ///             plane rotations of rows i and i + 1 by c_i = z_i / t_i, s_i = -t_{i+1} / t_i, t_i^2 = sum_{j >= i} z_j^2, from the bottom up
 /// Shapes      diagonal d, below e: N, rows `first` to N - 1 of which take part; below(i) couples rows i and i + 1
 /// Valid       lambda to a few epsilon, not above all others of T by more: the pivots are positive, and no ratio grows
-/// Accuracy    what the rotations leave beside the tridiagonal is dropped where it is below 4 epsilon; elsewhere nothing is done
+/// Accuracy    what the rotations leave beside the tridiagonal is dropped where it is below 4 epsilon; elsewhere, and where lambda was
+///             not the smallest, nothing is done
 /// Packs       no branch: no lane depends on the others
 /// Source      the eigenvector: Dhillon, Parlett 2004, "Orthogonal eigenvectors and relative gaps" (twisted factorisation); what a QL
 ///             step with a perfect shift lacks: Parlett, Le 1993, "Forward instability of tridiagonal QR"
@@ -89,7 +90,8 @@ Mask deflate(const Mask& is_wanted, const Scalar& eigenvalue, int first, Eigen::
     using Vector = Eigen::Matrix<Scalar, N, 1>;
     const Scalar zero(0), one(1);
     const Vector z = detail::tridiagonal_eigenvector(eigenvalue, first, diagonal, below);
-    const Scalar smallest(std::numeric_limits<Real>::min());
+    // Below it squares have no digits, and what is left of z counts as zero.
+    const Scalar smallest(std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon());
     Scalar tail = z(N - 1) * z(N - 1), length = z(N - 1);
     for (int i = N - 2; i >= first; --i) {
         const Scalar squared = tail + z(i) * z(i);
@@ -97,12 +99,13 @@ Mask deflate(const Mask& is_wanted, const Scalar& eigenvalue, int first, Eigen::
         const Scalar inverse = reciprocal_sqrt(squared);
         cosines(i) = select(is_turning, Scalar(z(i) * inverse), one);
         sines(i) = select(is_turning, Scalar(-(length * inverse)), zero);
-        tail = squared;
+        tail = select(is_turning, squared, zero);
         length = select(is_turning, Scalar(squared * inverse), zero);
     }
     Vector new_diagonal, new_below;
     const Scalar negligible(Real(4) * std::numeric_limits<Real>::epsilon());
-    auto is_done = is_wanted;
+    // A vector that has grown is none: the eigenvalue was not the smallest.
+    auto is_done = is_wanted & (tail < Scalar(Real(1) / std::numeric_limits<Real>::epsilon()));
     Scalar s = zero, c = one, p = zero, g = zero;
     for (int i = N - 2; i >= first; --i) {
         const Scalar f = s * below(i), b = c * below(i);

@@ -4,6 +4,7 @@
 #include <support/symmetric_matrices.hpp>
 
 #include <softtissue/core/pack.hpp>
+#include <softtissue/testing/random_states.hpp>
 
 #include <doctest/doctest.h>
 
@@ -63,6 +64,20 @@ TEST_CASE_TEMPLATE("all that is negative is found, of matrices of every kind", S
     check_all<S, 3>();
     check_all<S, 9>();
     check_all<S, 12>();
+}
+
+TEST_CASE_TEMPLATE("eigenvalues that are equal but for one or two", S, float, double) {
+    constexpr int N = 12;
+    RandomGenerator random(6);
+    for (int trial = 0; trial < 1000; ++trial) {
+        Square<S, N> A = -Square<S, N>::Identity();
+        for (int k = 0; k <= trial % 2; ++k) {
+            const auto v = random_normal<Eigen::Matrix<S, N, 1>>(random).normalized().eval();
+            A += v * v.transpose() * S(1 + trial / 2 % 2);
+        }
+        CAPTURE(A);
+        CHECK(error_below_zero<S, N>(A, negative_eigenpairs(A)) <= S(16 * N) * std::numeric_limits<S>::epsilon());
+    }
 }
 
 TEST_CASE_TEMPLATE("no more than is asked for", S, float, double) {
