@@ -57,7 +57,7 @@ const Scene& scene() {
 
 template <class S>
 using Avatar = SoftTissueAvatar<Prism6, FungOrthotropicField<S>>;
-const SequentialExecutor executor;
+const SequentialExecutor one_thread;
 
 template <class S>
 FungOrthotropicField<S> field() {
@@ -86,7 +86,7 @@ constexpr Index first_frame = 60;
 const Matrix3X<float>& converged(Index frame) {
     static std::vector<Matrix3X<float>> frames;
     static Avatar<double> avatar(scene().tissue, mesh<double>(), scene().layer.prescribed_vertices, field<double>(),
-                                 executor, {.quasi_newton = {.tolerance = 1e-7, .max_steps = 60}});
+                                 one_thread, {.quasi_newton = {.tolerance = 1e-7, .max_steps = 60}});
     if (frames.empty()) {
         avatar.start(pose<double>(first_frame - 2), pose<double>(first_frame - 1));
     }
@@ -128,7 +128,7 @@ void run_freely(benchmark::State& state, const Start& start, const Step& step, c
 template <class S>
 void avatar_step(benchmark::State& state) {
     Avatar<S> avatar(scene().tissue.template cast<S>(), mesh<S>(), scene().layer.prescribed_vertices, field<S>(),
-                     executor);
+                     one_thread);
     int newton = 0, steps = 0;
     run_freely(
         state, [&] { avatar.start(pose<S>(first_frame - 2), pose<S>(first_frame - 1)); },
@@ -166,7 +166,7 @@ public:
     Matrix3X<double> target;
 
     const PrescribedVertices& prescribed() const { return prescribed_; }
-    const SequentialExecutor& executor() const { return ::executor; }
+    const SequentialExecutor& executor() const { return one_thread; }
 
     double energy(const Matrix3X<double>& d) {
         double sum = inertia_.energy(d, executor());

@@ -21,7 +21,8 @@ namespace {
 
 using namespace softtissue;
 
-/// Entries of any sizes: of one size, graded by rows and columns, of few values, of low rank, denormal or huge.
+/// Entries of any sizes: of one size, graded by rows and columns, of few values, of low rank, denormal or huge, next to the
+/// identity or of two or three eigenvalues.
 template <class S, int N>
 Eigen::Matrix<S, N, N> any_matrix(RandomGenerator& random) {
     Eigen::Matrix<double, N, N> A;
@@ -29,7 +30,7 @@ Eigen::Matrix<S, N, N> any_matrix(RandomGenerator& random) {
         a = random.normal();
     }
     const double range = std::log10(double(std::numeric_limits<S>::max()));
-    switch (random.index(7)) {
+    switch (random.index(8)) {
         case 0:
             break;
         case 1:  // graded
@@ -54,6 +55,16 @@ Eigen::Matrix<S, N, N> any_matrix(RandomGenerator& random) {
         case 5:  // huge
             A *= std::pow(10, random.uniform(0.8, 0.95) * range);
             break;
+        case 6: {  // all eigenvalues equal but for one or two
+            const Eigen::Matrix<double, N, 2> v = A.template leftCols<2>();
+            A.setIdentity();
+            A *= random.index(2) == 0 ? 1 : -1;
+            const Index last = random.index(2);
+            for (Index k = 0; k <= last; ++k) {
+                A += random.normal() * v.col(k) * v.col(k).transpose();
+            }
+            break;
+        }
         default:  // nearly a multiple of the identity
             A *= std::pow(10, -random.uniform(0, 20));
             A.diagonal().array() += 1;

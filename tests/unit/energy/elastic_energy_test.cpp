@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define EIGEN_RUNTIME_NO_MALLOC
-
 #include <softtissue/energy/elastic_energy.hpp>
 
 #include <softtissue/material/field.hpp>

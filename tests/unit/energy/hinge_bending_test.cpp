@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define EIGEN_RUNTIME_NO_MALLOC
-
 #include <softtissue/energy/hinge_bending.hpp>
 
 #include <softtissue/core/thread_executor.hpp>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <support/allocation_counter.hpp>
-
 #include <softtissue/linalg/matrix_exponentials.hpp>
 
 #include "exponential_reference.hpp"
 
 #include <softtissue/core/thread_executor.hpp>
+
+#include <support/allocation_counter.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define EIGEN_RUNTIME_NO_MALLOC
 #include <softtissue/mesh/embedding.hpp>
 
 #include "small_meshes.hpp"

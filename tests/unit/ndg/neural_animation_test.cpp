@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <support/allocation_counter.hpp>
-
 #include <softtissue/ndg/neural_animation.hpp>
 
 #include <softtissue/core/thread_executor.hpp>
@@ -8,6 +6,7 @@
 #include <softtissue/skinning/joint_transforms.hpp>
 #include <softtissue/testing/random_states.hpp>
 
+#include <support/allocation_counter.hpp>
 #include <support/limb_model.hpp>
 
 #include <doctest/doctest.h>

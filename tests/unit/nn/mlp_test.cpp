@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <support/allocation_counter.hpp>
-
 #include <softtissue/nn/mlp.hpp>
 #include <softtissue/nn/quantized_mlp.hpp>
+
+#include <support/allocation_counter.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define EIGEN_RUNTIME_NO_MALLOC
-
 #include <softtissue/solver/objective.hpp>
 
 #include <softtissue/energy/dead_load.hpp>
