@@ -1,5 +1,5 @@
-// What a stranger's program does with the package: a material in both precisions, through the umbrella.
-#include <softtissue/softtissue.hpp>
+// What a stranger's program does with the package: a material in both precisions.
+#include <softtissue/material/stable_neo_hookean.hpp>
 
 namespace {
 
