@@ -49,6 +49,8 @@
 #include <softtissue/core/pack_gather.hpp>
 #include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/pack_math.hpp>
+#include <softtissue/core/pack_shuffle.hpp>
+#include <softtissue/core/prefetch.hpp>
 #include <softtissue/core/random.hpp>
 #include <softtissue/core/reciprocal.hpp>
 #include <softtissue/core/scalar.hpp>
@@ -65,6 +67,7 @@
 #include <softtissue/energy/dihedral_difference.hpp>
 #include <softtissue/energy/edge_stretch.hpp>
 #include <softtissue/energy/elastic_energy.hpp>
+#include <softtissue/energy/hessian_tiles.hpp>
 #include <softtissue/energy/hinge_bending.hpp>
 #include <softtissue/energy/hinge_invariants.hpp>
 #include <softtissue/energy/inertia.hpp>

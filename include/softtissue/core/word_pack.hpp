@@ -2,7 +2,7 @@
 /// @file
 /// One SIMD register of 32-bit words, for numbers of fewer bits that lie packed in them.
 ///
-/// What        WordPack: load, prefetch, mask and shift; its words read as floats, or converted to floats; sums of products of bytes
+/// What        WordPack: load, mask and shift; its words read as floats, or converted to floats; sums of products of bytes
 /// Equation    add_byte_products(u, s): word += sum over j = 0 .. 3 of byte j of u, 0 .. 255, times byte j of s, -128 .. 127
 /// Valid       65,536 products of bytes stay within a word. Integers: the same bits whatever the registers.
 /// Width       natural_lanes<float> words
@@ -107,12 +107,6 @@ struct WordPack {
         WordPack result;
         std::memcpy(&result.words, from, sizeof(Words));
         return result;
-    }
-    /// Asks for the memory at `from` before it is needed.
-    [[gnu::always_inline]] static inline void prefetch([[maybe_unused]] const std::uint32_t* from) {
-#if defined(__GNUC__)
-        __builtin_prefetch(from);
-#endif
     }
     [[gnu::always_inline]] static inline WordPack all(std::int32_t word) {
         return {word - Words{}};

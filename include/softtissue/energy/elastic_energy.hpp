@@ -22,12 +22,14 @@
 #include <softtissue/energy/rest_operators.hpp>
 #include <softtissue/energy/rest_packs.hpp>
 #include <softtissue/energy/stencil_assembly.hpp>
+#include <softtissue/linalg/nine_number_lanes.hpp>
 #include <softtissue/material/concepts.hpp>
 #include <softtissue/material/field.hpp>
 #include <softtissue/material/packed.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 
 #include <array>
+#include <cstddef>
 #include <utility>
 
 namespace softtissue {
@@ -176,7 +178,6 @@ private:
     /// blocks(a, b) = V sum_kl H_(.k)(.l) g_a[k] g_b[l] of every lane.
     template <class Gradients>
     static void contract_into(const Matrix9<Lanes>& H, const Gradients& g, const Lanes& volume, Scalar* slots) {
-        std::array<Scalar, size_t(Assembly::hessian_slot * width)> blocks;
         for (int b = 0; b < num_nodes; ++b) {
             Eigen::Matrix<Lanes, 9, 3> T;
             for (int column = 0; column < 3; ++column) {
@@ -186,16 +187,18 @@ private:
                 }
             }
             for (int a = 0; a <= b; ++a) {
+                Scalar block[9][std::size_t(width)];
                 for (int column = 0; column < 3; ++column) {
                     for (int row = 0; row < 3; ++row) {
                         const Lanes entry =
                             g(0, a) * T(row, column) + g(1, a) * T(row + 3, column) + g(2, a) * T(row + 6, column);
-                        entry.store(blocks.data() + width * (9 * Assembly::pair_index(a, b) + 3 * column + row));
+                        entry.store(block[3 * column + row]);
                     }
                 }
+                lanes_to_columns(
+                    block, slots + Assembly::Tiles::template block_offset<width>(Assembly::Tiles::pair_index(a, b), 0));
             }
         }
-        split_lanes<int(Assembly::hessian_slot)>(blocks.data(), slots);
     }
 
     /// From `count` packs to the numbers of each lane, one lane after the other.

@@ -189,9 +189,12 @@ public:
             [&](Index pack, Scalar* slots) {
                 const Blocks<Lanes> blocks = blocks_by_positions<Lanes>(hessian_of(pack, packed_edges(d, pack)));
                 for (int i = 0; i < width; ++i) {
-                    Eigen::Map<Blocks<Scalar>> slot(slots + Assembly::hessian_slot * i);
-                    slot = lane(blocks, i);
-                    pull_back(stencil(pack, i), slot);
+                    Blocks<Scalar> own = lane(blocks, i);
+                    pull_back(stencil(pack, i), own);
+                    for (int pair = 0; pair < Assembly::num_block_pairs; ++pair) {
+                        Eigen::Map<Matrix3<Scalar>>(slots + Assembly::Tiles::template block_offset<width>(pair, i)) =
+                            own.template block<3, 3>(0, 3 * pair);
+                    }
                 }
             },
             hessian);
@@ -237,7 +240,7 @@ private:
     static Blocks<T> blocks_by_positions(const Eigen::Matrix<T, 3 * num_edges, 3 * num_edges>& H) {
         Blocks<T> blocks;
         const auto set = [&](int a, int b, int row, int column, const T& entry) {
-            blocks(row, 3 * Assembly::pair_index(a, b) + column) = entry;
+            blocks(row, 3 * Assembly::Tiles::pair_index(a, b) + column) = entry;
         };
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) {
@@ -268,7 +271,7 @@ private:
         }
         for (int b = 0; b < num_nodes; ++b) {
             for (int a = 0; a <= b; ++a) {
-                auto block = blocks.template middleCols<3>(3 * Assembly::pair_index(a, b));
+                auto block = blocks.template middleCols<3>(3 * Assembly::Tiles::pair_index(a, b));
                 const Matrix3<Scalar> by_column = block * placement().map(stencils()(b, s));
                 block.noalias() = placement().map(stencils()(a, s)).transpose() * by_column;
             }

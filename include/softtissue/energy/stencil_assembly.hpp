@@ -4,10 +4,10 @@
 ///
 /// What        every stencil (a cell, a hinge, ...) of num_nodes vertices writes its gradient and Hessian into slots of its own;
 ///             a gather then adds the slots vertex by vertex in ascending stencil order: the same bits for every executor.
-///             Hessians go tile by tile: those of some hundred stencils are written, then added while they lie in the cache.
+///             Hessians go tile by tile (hessian_tiles.hpp).
 /// Packs       N stencils at a time, evaluated together, written one after the other; the last pack is padded.
 /// Shapes      gradient slot 3 x num_nodes; Hessian slot: blocks (a, b), a <= b, 3x3 each, of a symmetric stencil Hessian.
-/// Memory      Scalar[3 num_nodes + 1] and int32[num_nodes^2 + 3 num_nodes] per stencil; half a MiB for the Hessians of a tile.
+/// Memory      Scalar[3 num_nodes + 1] and int32[3 num_nodes] per stencil, and what HessianTiles needs
 /// Tests       tests/unit/energy/stencil_assembly_test.cpp
 #pragma once
 
@@ -17,6 +17,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/energy/hessian_tiles.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 
@@ -32,8 +33,8 @@ class StencilAssembly {
 public:
     using Scalar = S;
     static constexpr int num_nodes = num_nodes_;
-    static constexpr int num_block_pairs = num_nodes * (num_nodes + 1) / 2;
-    static constexpr Index hessian_slot = 9 * num_block_pairs;
+    using Tiles = HessianTiles<num_nodes, Scalar>;
+    static constexpr int num_block_pairs = Tiles::num_block_pairs;
 
     using GradientSlot = Eigen::Matrix<Scalar, 3, num_nodes>;
 
@@ -78,7 +79,7 @@ public:
     }
 
     /// Calls `hessian_of(stencil, blocks)` for each stencil, which fills `blocks` (3 x 3 num_block_pairs; block (a, b), a <= b,
-    /// at pair_index(a, b)) and adds the results to `hessian`. Needs bind().
+    /// at Tiles::pair_index(a, b)) and adds the results to `hessian`. Needs bind().
     template <Executor E, class HessianOf>
     void add_hessian(const E& executor, const HessianOf& hessian_of, BlockMatrix<Scalar>& hessian) {
         add_hessian_by_ranges(
@@ -96,12 +97,12 @@ public:
     template <Executor E, class Fill>
     void add_hessian_by_ranges(const E& executor, const Fill& fill, BlockMatrix<Scalar>& hessian) {
         using Blocks = Eigen::Map<Eigen::Matrix<Scalar, 3, 3 * num_block_pairs>>;
-        add_tiles(
+        tiles_.template add<1>(
             executor,
-            [&](Index first, Index count) {
+            [&](Index first, Index count, Scalar* slots) {
                 executor.for_each_range(count, [&](Index begin, Index end) {
                     fill(first + begin, first + end,
-                         [&](Index s) { return Blocks(hessian_slots_.data() + hessian_slot * (s - first)); });
+                         [&](Index s) { return Blocks(slots + Tiles::slot_size * (s - first)); });
                 });
             },
             hessian);
@@ -135,14 +136,13 @@ public:
         return sum_of_energy_slots();
     }
 
-    /// The same with hessian_slot numbers for each stencil, the blocks of add_hessian(), column-major.
+    /// The same with the blocks of add_hessian(), pack by pack: Tiles::block_offset<N>(Tiles::pair_index(a, b), lane) is their place.
     template <int N, Executor E, class HessiansOf>
     void add_packed_hessian(const E& executor, const HessiansOf& hessians_of, BlockMatrix<Scalar>& hessian) {
-        static_assert(tile % N == 0);
-        add_tiles(
+        tiles_.template add<N>(
             executor,
-            [&](Index first, Index count) {
-                fill_slots<N>(executor, first, count, hessians_of, hessian_slots_.data(), hessian_slot);
+            [&](Index first, Index count, Scalar* slots) {
+                fill_slots<N>(executor, first, count, hessians_of, slots, Tiles::slot_size);
             },
             hessian);
     }
@@ -165,48 +165,10 @@ public:
 
     /// Looks up where every block goes; once per pattern, before add_hessian().
     void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
-        const Index num_tiles = (num_stencils() + tile - 1) / tile;
-        std::vector<std::vector<Run>> runs_of_tile{size_t(num_tiles)};
-        ranks_.resize(num_nodes, Index(incidences_.size()));
-        for (Index j = 0; j < prescribed.num_free(); ++j) {
-            const size_t v = size_t(prescribed.free_vertices()[size_t(j)]);
-            for (std::int32_t k = incidence_offsets_[v]; k < incidence_offsets_[v + 1]; ++k) {
-                const Index s = incidences_[size_t(k)] / num_nodes;
-                for (int a = 0; a < num_nodes; ++a) {
-                    const std::int32_t row = prescribed.free_index(stencils_(a, s));
-                    ranks_(a, k) = row == PrescribedVertices::prescribed ? row : pattern.rank(j, row);
-                }
-                std::vector<Run>& runs = runs_of_tile[size_t(s / tile)];
-                if (runs.empty() || runs.back().column != j) {
-                    runs.push_back({static_cast<std::int32_t>(j), k, k});
-                }
-                ++runs.back().end;
-            }
-        }
-        runs_.clear();
-        tile_runs_.assign(1, 0);
-        for (const std::vector<Run>& runs : runs_of_tile) {
-            runs_.insert(runs_.end(), runs.begin(), runs.end());
-            tile_runs_.push_back(Index(runs_.size()));
-        }
-        hessian_slots_.resize(hessian_slot * std::min(tile, padded(num_stencils())));
+        tiles_.bind(stencils_, incidence_offsets_, incidences_, prescribed, pattern);
     }
 
-    /// Place of block (a, b), a <= b.
-    static constexpr int pair_index(int a, int b) { return a + b * (b + 1) / 2; }
-
 private:
-    /// The incidences of one column's vertex with the stencils of one tile.
-    struct Run {
-        std::int32_t column;
-        std::int32_t begin;
-        std::int32_t end;
-    };
-
-    /// Stencils whose Hessians are added before the next ones are evaluated: as many as stay in a core's cache.
-    static constexpr Index tile =
-        std::max<Index>(64, (Index(1) << 19) / Index(hessian_slot * sizeof(Scalar)) / 64 * 64);
-
     /// Room for the last pack.
     static constexpr Index padded(Index num_stencils) { return (num_stencils + 63) / 64 * 64; }
 
@@ -247,52 +209,12 @@ private:
         });
     }
 
-    /// `fill_tile(first, count)` fills the slots of a tile's stencils.
-    template <Executor E, class FillTile>
-    void add_tiles(const E& executor, const FillTile& fill_tile, BlockMatrix<Scalar>& hessian) {
-        SOFTTISSUE_ASSERT(!tile_runs_.empty());
-        for (Index t = 0; t + 1 < Index(tile_runs_.size()); ++t) {
-            const Index first = t * tile;
-            fill_tile(first, std::min(tile, num_stencils() - first));
-            const Index first_run = tile_runs_[size_t(t)];
-            executor.for_each_range(tile_runs_[size_t(t) + 1] - first_run, [&](Index begin, Index end) {
-                for (Index r = first_run + begin; r < first_run + end; ++r) {
-                    gather_run(runs_[size_t(r)], first, hessian);
-                }
-            });
-        }
-    }
-
-    void gather_run(const Run& run, Index first_stencil, BlockMatrix<Scalar>& hessian) const {
-        using Block = Eigen::Map<const Matrix3<Scalar>>;
-        for (std::int32_t k = run.begin; k < run.end; ++k) {
-            const std::int32_t incidence = incidences_[size_t(k)];
-            const Index s = incidence / num_nodes - first_stencil;
-            const int b = incidence % num_nodes;
-            const Scalar* const blocks = hessian_slots_.data() + hessian_slot * s;
-            for (int a = 0; a < num_nodes; ++a) {
-                const std::int32_t rank = ranks_(a, k);
-                if (rank == PrescribedVertices::prescribed) {
-                    continue;
-                }
-                if (a <= b) {
-                    hessian.add(run.column, rank, Block(blocks + 9 * pair_index(a, b)));
-                } else {
-                    hessian.add(run.column, rank, Block(blocks + 9 * pair_index(b, a)).transpose());
-                }
-            }
-        }
-    }
-
     Connectivity<num_nodes> stencils_;
     std::vector<std::int32_t> incidence_offsets_;
     std::vector<std::int32_t> incidences_;  // num_nodes * stencil + node, ascending per vertex
     VectorX<Scalar> energy_slots_;
     Matrix3X<Scalar> gradient_slots_;
-    VectorX<Scalar> hessian_slots_;  // of one tile
-    Connectivity<num_nodes> ranks_;  // per incidence
-    std::vector<Run> runs_;          // ascending tile, then column
-    std::vector<Index> tile_runs_;   // where the runs of each tile begin
+    Tiles tiles_;
 };
 
 }  // namespace softtissue

@@ -25,6 +25,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
+#include <softtissue/core/pack_shuffle.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/element/prism6.hpp>
 #include <softtissue/element/tet4.hpp>
@@ -38,6 +39,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace softtissue {
@@ -111,7 +113,15 @@ public:
             for (Index p = begin; p < end; ++p) {
                 // Four numbers at a time, of which the fourth is the next column's; where there may be no next one, three.
                 const Index next = careful != at_last_vertex_.end() ? *careful : end;
-                for (const Index stop = is_dense ? std::min(next, end - 1) : p; p < stop; ++p) {
+                const Index stop = is_dense ? std::min(next, end - 1) : p;
+                if constexpr (natural_lanes<S> >= 16) {
+                    for (; p + 2 < stop; p += 2) {
+                        const Eight pair = positions_of_pair(p, from, std::make_integer_sequence<int, width>());
+                        chosen<0, 1, 2, 3>(pair).store(to + 3 * p);
+                        chosen<4, 5, 6, 7>(pair).store(to + 3 * p + 3);
+                    }
+                }
+                for (; p < stop; ++p) {
                     position(p, [from](Index v) { return Four::load(from + 3 * v); }).store(to + 3 * p);
                 }
                 const Four sum = position(
@@ -138,14 +148,28 @@ public:
 
 private:
     using Four = Pack<S, 4>;
+    using Eight = Pack<S, 8>;
+
+    /// Of points p and p + 1, a half of the lanes each, rounded as position() does; reads four weights more.
+    template <int... i>
+    [[gnu::always_inline]] inline Eight positions_of_pair(Index p, const S* from,
+                                                          std::integer_sequence<int, i...>) const {
+        const std::int32_t* const v = indices_.data() + width * p;
+        const auto w = Pack<S, 16>::load(weights_.data() + width * p);
+        const auto at = [&](int k) { return Four::load(from + 3 * Index(v[k])); };
+        Eight sum(0);
+        ((sum += chosen<i, i, i, i, width + i, width + i, width + i, width + i>(w) * joined(at(i), at(width + i))),
+         ...);
+        return sum;
+    }
 
     /// Of a point; at(v) are the coordinates of a vertex.
     template <class At>
     [[gnu::always_inline]] inline Four position(Index p, const At& at) const {
         const std::int32_t* const v = indices_.data() + width * p;
         const S* const w = weights_.data() + width * p;
-        Four sum = Four(w[0]) * at(v[0]);
-        for (int i = 1; i < width; ++i) {
+        Four sum(0);
+        for (int i = 0; i < width; ++i) {
             sum += Four(w[i]) * at(v[i]);
         }
         return sum;

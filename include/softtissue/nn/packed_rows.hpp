@@ -17,6 +17,7 @@
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/error.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/prefetch.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/core/word_pack.hpp>
 #include <softtissue/nn/concepts.hpp>
@@ -159,7 +160,7 @@ private:
     template <class Sums, class Columns_, std::size_t... c>
     [[gnu::always_inline]] static inline void add_block(Sums& sums, const std::uint32_t* words, const Columns_& columns,
                                                         Index element, std::index_sequence<c...>) {
-        WordPack::prefetch(words + words_ahead);
+        prefetch(words + words_ahead);
         const typename W::Block weights(WordPack::load(words));
         (sums[c].add(weights, columns[c] + element), ...);
     }

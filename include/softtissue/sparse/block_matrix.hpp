@@ -12,6 +12,7 @@
 #include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/prefetch.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/sparse/block_pattern.hpp>
 
@@ -65,16 +66,40 @@ public:
 
     void set_zero() { matrix_.coeffs().setZero(); }
 
-    /// Adds `block` at row pattern().rows(j)[rank], column j.
-    void add(Index j, std::int32_t rank, const Matrix3<Scalar>& block) {
-        Scalar* const values = matrix_.valuePtr();
-        for (int c = 0; c < 3; ++c) {
-            Scalar* const column = values + column_begin(j, c) + 3 * rank;
-            column[0] += block(0, c);
-            column[1] += block(1, c);
-            column[2] += block(2, c);
+    /// The blocks of one column, for what adds many of them.
+    class Column {
+    public:
+        /// Adds `block`, 3x3, at row pattern().rows(j)[rank].
+        template <class Block>
+        void add(std::int32_t rank, const Eigen::MatrixBase<Block>& block) const {
+            Scalar* entries = values_ + 3 * Index(rank);
+            for (int c = 0; c < 3; ++c) {
+                for (int d = 0; d < 3; ++d) {
+                    entries[d] += block(d, c);
+                }
+                entries += size_;
+            }
         }
-    }
+
+        /// Asks for all of it before it is needed.
+        void prefetch() const {
+            for (Index i = 0; i < 3 * size_; i += Index(64 / sizeof(Scalar))) {
+                prefetch_to_write(values_ + i);
+            }
+        }
+
+    private:
+        friend class BlockMatrix;
+        Column(Scalar* values, Index size) : values_(values), size_(size) {}
+
+        Scalar* values_;
+        Index size_;
+    };
+
+    Column column(Index j) { return {matrix_.valuePtr() + column_begin(j, 0), column_size(j)}; }
+
+    /// Adds `block` at row pattern().rows(j)[rank], column j.
+    void add(Index j, std::int32_t rank, const Matrix3<Scalar>& block) { column(j).add(rank, block); }
 
     /// The block at row pattern().rows(j)[rank], column j.
     Matrix3<Scalar> block(Index j, std::int32_t rank) const {

@@ -14,6 +14,7 @@
 
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/prefetch.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <array>
@@ -86,11 +87,6 @@ private:
     static Eigen::Map<Lanes> lanes(Scalar* y, Index place) { return Eigen::Map<Lanes>(y + 4 * place); }
 
     /// Hardware reads ahead within a page only.
-    static void read_ahead(const Scalar* from) {
-#if defined(__GNUC__)
-        __builtin_prefetch(from);
-#endif
-    }
     static constexpr Index ahead = 2048 / Index(sizeof(Scalar));
 
     template <int rows>
@@ -125,7 +121,7 @@ private:
         const Scalar* L = at.block;
         const std::int32_t* const end = at.row + strip.num_blocks;
         for (const std::int32_t* row = at.row; row != end; ++row, L += rows * columns) {
-            read_ahead(L + ahead);
+            prefetch(L + ahead);
             for (int r = 0; r < rows; ++r) {
                 Lanes sum = lanes(y, *row + r);
                 for (int c = 0; c < columns; ++c) {
@@ -149,7 +145,7 @@ private:
         for (const std::int32_t* row = at.row; row != end;) {
             L -= rows * columns;
             --row;
-            read_ahead(L - ahead);
+            prefetch(L - ahead);
             for (int r = 0; r < rows; ++r) {
                 const Lanes y_r = lanes(y, *row + r);
                 for (int c = 0; c < columns; ++c) {

@@ -41,7 +41,6 @@ TEST_CASE("words are masked and shifted, and read as floats or integers") {
     const WordPack difference = pack - WordPack::all(5);
     std::array<std::uint32_t, size_t(lanes)> differences;
     std::memcpy(differences.data(), &difference.words, sizeof differences);
-    WordPack::prefetch(from.data());
     for (size_t l = 0; l < size_t(lanes); ++l) {
         CHECK(numbers[l] == float((from[l] & 0x7f00ff00U) >> 8));
         CHECK(std::bit_cast<std::uint32_t>(floats[l]) == (from[l] & 0xffffU) << 14);
