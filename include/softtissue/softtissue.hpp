@@ -46,7 +46,7 @@
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
 #include <softtissue/core/pack_array.hpp>
-#include <softtissue/core/pack_gather.hpp>
+#include <softtissue/core/pack_columns.hpp>
 #include <softtissue/core/pack_mask.hpp>
 #include <softtissue/core/pack_math.hpp>
 #include <softtissue/core/pack_shuffle.hpp>
@@ -67,6 +67,7 @@
 #include <softtissue/energy/dihedral_difference.hpp>
 #include <softtissue/energy/edge_stretch.hpp>
 #include <softtissue/energy/elastic_energy.hpp>
+#include <softtissue/energy/gradient_parts.hpp>
 #include <softtissue/energy/hessian_tiles.hpp>
 #include <softtissue/energy/hinge_bending.hpp>
 #include <softtissue/energy/hinge_invariants.hpp>

@@ -16,6 +16,7 @@
 
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
+#include <softtissue/core/pack_columns.hpp>
 #include <softtissue/element/concepts.hpp>
 #include <softtissue/energy/concepts.hpp>
 #include <softtissue/energy/node_packs.hpp>
@@ -28,7 +29,6 @@
 #include <softtissue/material/packed.hpp>
 #include <softtissue/mesh/cell_mesh.hpp>
 
-#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -165,14 +165,13 @@ private:
     void forces_into(Index pack, const Matrix3<Lanes>& P, Scalar* slots) const {
         const auto g = rest_.packed_gradients(pack);
         const Matrix3<Lanes> VP = P * rest_.packed_volume(pack);
-        std::array<Scalar, size_t(3 * num_nodes * width)> forces;
         for (int i = 0; i < num_nodes; ++i) {
+            Vector3<Lanes> force;
             for (int k = 0; k < 3; ++k) {
-                const Lanes force = VP(k, 0) * g(0, i) + VP(k, 1) * g(1, i) + VP(k, 2) * g(2, i);
-                force.store(forces.data() + width * (3 * i + k));
+                force(k) = VP(k, 0) * g(0, i) + VP(k, 1) * g(1, i) + VP(k, 2) * g(2, i);
             }
+            store_columns(force, slots + Assembly::Gradients::template column_offset<width>(i, 0));
         }
-        split_lanes<3 * num_nodes>(forces.data(), slots);
     }
 
     /// blocks(a, b) = V sum_kl H_(.k)(.l) g_a[k] g_b[l] of every lane.
@@ -197,16 +196,6 @@ private:
                 }
                 lanes_to_columns(
                     block, slots + Assembly::Tiles::template block_offset<width>(Assembly::Tiles::pair_index(a, b), 0));
-            }
-        }
-    }
-
-    /// From `count` packs to the numbers of each lane, one lane after the other.
-    template <int count>
-    static void split_lanes(const Scalar* packs, Scalar* slots) {
-        for (int i = 0; i < width; ++i) {
-            for (int k = 0; k < count; ++k) {
-                slots[i * count + k] = packs[k * width + i];
             }
         }
     }

@@ -20,7 +20,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
 namespace softtissue {
@@ -43,40 +43,35 @@ public:
         return 9 * (Index(N) * pair + lane);
     }
 
-    /// Looks up where every block goes; once per pattern, before add(). Entry k of `incidences`, num_nodes * stencil + node, offsets[v] <= k <
-    /// offsets[v + 1], belongs to vertex v; ascending.
-    void bind(const Connectivity<num_nodes>& stencils, std::span<const std::int32_t> offsets,
-              std::span<const std::int32_t> incidences, const PrescribedVertices& prescribed,
+    /// Looks up where every block goes; once per pattern, before add().
+    void bind(const Connectivity<num_nodes>& stencils, const PrescribedVertices& prescribed,
               const BlockPattern& pattern) {
         num_stencils_ = stencils.cols();
-        std::vector<std::vector<Run>> runs_of_tile{size_t((num_stencils_ + tile - 1) / tile)};
-        for (Index j = 0; j < prescribed.num_free(); ++j) {
-            const size_t v = size_t(prescribed.free_vertices()[size_t(j)]);
-            for (std::int32_t k = offsets[v]; k < offsets[v + 1]; ++k) {
-                std::vector<Run>& runs = runs_of_tile[size_t(incidences[size_t(k)] / num_nodes / tile)];
-                if (runs.empty() || runs.back().column != j) {
-                    runs.push_back({static_cast<std::int32_t>(j), k, k});
-                }
-                ++runs.back().end;
-            }
-        }
         runs_.clear();
         tile_runs_.assign(1, 0);
         incidences_.clear();
-        ranks_.resize(num_nodes, Index(incidences.size()));
-        for (const std::vector<Run>& runs : runs_of_tile) {
-            for (const Run& run : runs) {
-                const auto begin = static_cast<std::int32_t>(incidences_.size());
-                for (std::int32_t k = run.begin; k < run.end; ++k) {
-                    const Index s = incidences[size_t(k)] / num_nodes;
-                    for (int a = 0; a < num_nodes; ++a) {
-                        const std::int32_t row = prescribed.free_index(stencils(a, s));
-                        ranks_(a, Index(incidences_.size())) =
-                            row == PrescribedVertices::prescribed ? row : pattern.rank(run.column, row);
-                    }
-                    incidences_.push_back(incidences[size_t(k)]);
+        ranks_.resize(num_nodes, stencils.size());
+        std::vector<std::pair<std::int32_t, std::int32_t>> columns;  // with what adds to them, of a tile
+        for (Index first = 0; first < num_stencils_; first += tile) {
+            columns.clear();
+            for (Index k = num_nodes * first; k < num_nodes * std::min(first + tile, num_stencils_); ++k) {
+                const std::int32_t column = prescribed.free_index(stencils.data()[k]);
+                if (column != PrescribedVertices::prescribed) {
+                    columns.emplace_back(column, static_cast<std::int32_t>(k));
                 }
-                runs_.push_back({run.column, begin, static_cast<std::int32_t>(incidences_.size())});
+            }
+            std::sort(columns.begin(), columns.end());
+            for (const auto& [column, incidence] : columns) {
+                const auto k = static_cast<std::int32_t>(incidences_.size());
+                if (Index(runs_.size()) == tile_runs_.back() || runs_.back().column != column) {
+                    runs_.push_back({column, k, k});
+                }
+                ++runs_.back().end;
+                for (int a = 0; a < num_nodes; ++a) {
+                    const std::int32_t row = prescribed.free_index(stencils(a, incidence / num_nodes));
+                    ranks_(a, k) = row == PrescribedVertices::prescribed ? row : pattern.rank(column, row);
+                }
+                incidences_.push_back(incidence);
             }
             tile_runs_.push_back(Index(runs_.size()));
         }
@@ -141,7 +136,7 @@ private:
     VectorX<Scalar> slots_;                 // of one tile
     std::vector<Run> runs_;                 // ascending tile, then column
     std::vector<Index> tile_runs_;          // where the runs of each tile begin
-    std::vector<std::int32_t> incidences_;  // in the order of runs
+    std::vector<std::int32_t> incidences_;  // num_nodes * stencil + node, in the order of runs
     Connectivity<num_nodes> ranks_;         // of each of them
 };
 

@@ -4,8 +4,7 @@
 ///
 /// What        cell c in lane c % width of pack c / width; the lanes beyond the last cell repeat it
 /// Shapes      x 3 x vertices; gathered 3 x num_nodes of packs
-/// Why         a pack's node numbers lie together and are turned into places of numbers once: a gather of 3 num_nodes packs is
-///             as many instructions where the machine has them
+/// Why         a pack's node numbers lie together and are turned into places of numbers once
 /// Memory      4 num_nodes bytes a cell
 /// Tests       tests/unit/energy/node_packs_test.cpp
 #pragma once
@@ -13,7 +12,7 @@
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
-#include <softtissue/core/pack_gather.hpp>
+#include <softtissue/core/pack_columns.hpp>
 #include <softtissue/core/scalar.hpp>
 
 #include <algorithm>
@@ -34,6 +33,7 @@ public:
                     places_.push_back(3 * cells(a, cell(p, i)));
                 }
             }
+            largest_places_.push_back(*std::max_element(places_.end() - num_nodes * width, places_.end()));
         }
     }
 
@@ -49,9 +49,16 @@ public:
         SOFTTISSUE_ASSERT(pack >= 0 && pack < num_packs());
         const std::int32_t* const places = places_.data() + num_nodes * width * pack;
         Eigen::Matrix<Pack<S, width>, 3, num_nodes> result;
-        for (int a = 0; a < num_nodes; ++a) {
-            for (int k = 0; k < 3; ++k) {
-                result(k, a) = softtissue::gather<width>(x.data() + k, places + a * width);
+        if (largest_places_[size_t(pack)] + 3 < x.size()) {
+            for (int a = 0; a < num_nodes; ++a) {
+                result.col(a) = gather_columns<width>(x.data(), places + a * width);
+            }
+        } else {  // the last column has no number behind it
+            for (int a = 0; a < num_nodes; ++a) {
+                for (int k = 0; k < 3; ++k) {
+                    result(k, a) =
+                        Pack<S, width>::from_lanes([&](int i) { return x.data()[places[a * width + i] + k]; });
+                }
             }
         }
         return result;
@@ -59,7 +66,8 @@ public:
 
 private:
     Index num_cells_;
-    std::vector<std::int32_t> places_;  // three times the vertex, lane by lane, node by node
+    std::vector<std::int32_t> places_;          // three times the vertex, lane by lane, node by node
+    std::vector<std::int32_t> largest_places_;  // of each pack
 };
 
 }  // namespace softtissue

@@ -16,6 +16,7 @@
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
+#include <softtissue/core/pack_columns.hpp>
 #include <softtissue/core/scalar.hpp>
 #include <softtissue/energy/node_packs.hpp>
 #include <softtissue/energy/placement.hpp>
@@ -219,11 +220,21 @@ private:
             }
             by_nodes(k, 0) = -sum;
         }
-        for (int i = 0; i < width; ++i) {
-            Eigen::Map<typename Assembly::GradientSlot> slot(slots + 3 * num_nodes * i);
-            slot = lane(by_nodes, i);
-            pull_back_gradient(stencil(pack, i), slot);
+        for (int m = 0; m < num_nodes; ++m) {
+            store_columns(Vector3<Lanes>(by_nodes.col(m)), slots + place_of(m, 0));
         }
+        if (placement().has_maps()) {
+            for (int m = 0; m < num_nodes; ++m) {
+                for (int i = 0; i < width; ++i) {
+                    Eigen::Map<Vector3<Scalar>> force(slots + place_of(m, i));
+                    force = placement().pull_back(stencils()(m, stencil(pack, i)), force);
+                }
+            }
+        }
+    }
+
+    static constexpr Index place_of(int node, int lane) {
+        return Assembly::Gradients::template column_offset<width>(node, lane);
     }
 
     template <class Slot>

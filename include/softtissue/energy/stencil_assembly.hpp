@@ -2,21 +2,21 @@
 /// @file
 /// From stencils to vertices: slots per stencil, gathered in a fixed order.
 ///
-/// What        every stencil (a cell, a hinge, ...) of num_nodes vertices writes its gradient and Hessian into slots of its own;
-///             a gather then adds the slots vertex by vertex in ascending stencil order: the same bits for every executor.
-///             Hessians go tile by tile (hessian_tiles.hpp).
-/// Packs       N stencils at a time, evaluated together, written one after the other; the last pack is padded.
-/// Shapes      gradient slot 3 x num_nodes; Hessian slot: blocks (a, b), a <= b, 3x3 each, of a symmetric stencil Hessian.
-/// Memory      Scalar[3 num_nodes + 1] and int32[3 num_nodes] per stencil, and what HessianTiles needs
+/// What        every stencil (a cell, a hinge, ...) of num_nodes vertices writes its energy, gradient and Hessian into slots, which are
+///             added up in a fixed order: the same bits for every executor. Gradients go part by part (gradient_parts.hpp),
+///             Hessians tile by tile (hessian_tiles.hpp).
+/// Packs       N stencils at a time, evaluated together; the last pack is padded.
+/// Shapes      gradient 3 x num_nodes; Hessian slot: blocks (a, b), a <= b, 3x3 each, of a symmetric stencil Hessian.
+/// Memory      a Scalar per stencil, and what GradientParts and HessianTiles need
 /// Tests       tests/unit/energy/stencil_assembly_test.cpp
 #pragma once
 
-#include <softtissue/core/checked_index.hpp>
 #include <softtissue/core/config.hpp>
 #include <softtissue/core/executor.hpp>
 #include <softtissue/core/notation.hpp>
 #include <softtissue/core/pack.hpp>
 #include <softtissue/core/scalar.hpp>
+#include <softtissue/energy/gradient_parts.hpp>
 #include <softtissue/energy/hessian_tiles.hpp>
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
@@ -36,33 +36,17 @@ public:
     using Tiles = HessianTiles<num_nodes, Scalar>;
     static constexpr int num_block_pairs = Tiles::num_block_pairs;
 
+    using Gradients = GradientParts<num_nodes, Scalar>;
+
     using GradientSlot = Eigen::Matrix<Scalar, 3, num_nodes>;
 
     StencilAssembly(Connectivity<num_nodes> stencils, Index num_vertices)
         : stencils_(std::move(stencils)),
-          energy_slots_(padded(stencils_.cols())),
-          gradient_slots_(3, num_nodes * padded(stencils_.cols())) {
-        checked_index(num_nodes * num_stencils(), "energy: nodes of all its cells");
-        incidence_offsets_.assign(size_t(num_vertices) + 1, 0);
-        for (Index s = 0; s < num_stencils(); ++s) {
-            for (int a = 0; a < num_nodes; ++a) {
-                ++incidence_offsets_[size_t(stencils_(a, s)) + 1];
-            }
-        }
-        for (size_t v = 0; v < size_t(num_vertices); ++v) {
-            incidence_offsets_[v + 1] += incidence_offsets_[v];
-        }
-        incidences_.resize(size_t(incidence_offsets_.back()));
-        std::vector<std::int32_t> next(incidence_offsets_.begin(), incidence_offsets_.end() - 1);
-        for (Index s = 0; s < num_stencils(); ++s) {
-            for (int a = 0; a < num_nodes; ++a) {
-                incidences_[size_t(next[size_t(stencils_(a, s))]++)] = static_cast<std::int32_t>(num_nodes * s + a);
-            }
-        }
-    }
+          gradients_(stencils_, num_vertices),
+          energy_slots_((num_stencils() + 63) / 64 * 64) {}
 
     Index num_stencils() const { return stencils_.cols(); }
-    Index num_vertices() const { return static_cast<Index>(incidence_offsets_.size()) - 1; }
+    Index num_vertices() const { return gradients_.num_vertices(); }
     const Connectivity<num_nodes>& stencils() const { return stencils_; }
 
     /// Calls `energy_of(stencil)` for each stencil; returns the sum, added in a fixed order.
@@ -75,7 +59,9 @@ public:
     template <Executor E, class GradientOf>
     void add_gradient(const E& executor, const GradientOf& gradient_of, Matrix3X<Scalar>& gradient) {
         add_packed_gradient<1>(
-            executor, [&](Index s, Scalar* slot) { Eigen::Map<GradientSlot>{slot} = gradient_of(s); }, gradient);
+            executor,
+            [&](Index s, Scalar* slot) { Eigen::Map<GradientSlot, 0, Eigen::OuterStride<4>>{slot} = gradient_of(s); },
+            gradient);
     }
 
     /// Calls `hessian_of(stencil, blocks)` for each stencil, which fills `blocks` (3 x 3 num_block_pairs; block (a, b), a <= b,
@@ -116,23 +102,19 @@ public:
         return sum_of_energy_slots();
     }
 
-    /// The same with a GradientSlot for each stencil, one after the other.
+    /// The same with gradients, pack by pack: Gradients::column_offset<N>(node, lane) is the place of three numbers.
     template <int N, Executor E, class GradientsOf>
     void add_packed_gradient(const E& executor, const GradientsOf& gradients_of, Matrix3X<Scalar>& gradient) {
-        fill_slots<N>(executor, 0, num_stencils(), gradients_of, gradient_slots_.data(), 3 * num_nodes);
-        gather_gradient_slots(executor, gradient);
+        gradients_.template add<N>(executor, gradients_of, gradient);
     }
 
     /// Both at once: calls `terms_of(pack, energies, gradients)`.
     template <int N, Executor E, class TermsOf>
     Scalar add_packed_energy_and_gradient(const E& executor, const TermsOf& terms_of, Matrix3X<Scalar>& gradient) {
-        fill_slots<N>(
-            executor, 0, num_stencils(),
-            [&](Index pack, Scalar* energies) {
-                terms_of(pack, energies, gradient_slots_.data() + 3 * num_nodes * N * pack);
-            },
-            energy_slots_.data(), 1);
-        gather_gradient_slots(executor, gradient);
+        gradients_.template add<N>(
+            executor,
+            [&](Index pack, Scalar* gradients) { terms_of(pack, energy_slots_.data() + N * pack, gradients); },
+            gradient);
         return sum_of_energy_slots();
     }
 
@@ -165,13 +147,10 @@ public:
 
     /// Looks up where every block goes; once per pattern, before add_hessian().
     void bind(const PrescribedVertices& prescribed, const BlockPattern& pattern) {
-        tiles_.bind(stencils_, incidence_offsets_, incidences_, prescribed, pattern);
+        tiles_.bind(stencils_, prescribed, pattern);
     }
 
 private:
-    /// Room for the last pack.
-    static constexpr Index padded(Index num_stencils) { return (num_stencils + 63) / 64 * 64; }
-
     Scalar sum_of_energy_slots() {
         using Lanes = Pack<Scalar, natural_lanes<Scalar>>;
         energy_slots_.tail(energy_slots_.size() - num_stencils()).setZero();
@@ -186,19 +165,6 @@ private:
         return sum;
     }
 
-    template <Executor E>
-    void gather_gradient_slots(const E& executor, Matrix3X<Scalar>& gradient) const {
-        executor.for_each_range(num_vertices(), [&](Index begin, Index end) {
-            for (Index v = begin; v < end; ++v) {
-                Vector3<Scalar> sum = gradient.col(v);
-                for (std::int32_t k = incidence_offsets_[size_t(v)]; k < incidence_offsets_[size_t(v) + 1]; ++k) {
-                    sum += gradient_slots_.col(incidences_[size_t(k)]);
-                }
-                gradient.col(v) = sum;
-            }
-        });
-    }
-
     template <int N, Executor E, class Fill>
     static void fill_slots(const E& executor, Index first, Index count, const Fill& fill, Scalar* slots,
                            Index slot_size) {
@@ -210,10 +176,8 @@ private:
     }
 
     Connectivity<num_nodes> stencils_;
-    std::vector<std::int32_t> incidence_offsets_;
-    std::vector<std::int32_t> incidences_;  // num_nodes * stencil + node, ascending per vertex
-    VectorX<Scalar> energy_slots_;
-    Matrix3X<Scalar> gradient_slots_;
+    Gradients gradients_;
+    VectorX<Scalar> energy_slots_;  // with room for the last pack
     Tiles tiles_;
 };
 

@@ -39,3 +39,14 @@ TEST_CASE_TEMPLATE("chosen: any lanes, any number of them, repeated or not", S, 
     CHECK(chosen<2>(counted<Pack<S, 4>>(5))[0] == S(7));
     CHECK(chosen<15, 0, 12, 3, 7, 6, 5, 4, 11, 10, 9, 8, 1, 2, 13, 14>(counted<Pack<S, 16>>(0))[0] == S(15));
 }
+
+TEST_CASE_TEMPLATE("shuffled: any lanes of two packs", P, Pack<float, 1>, Pack<float, 3>, Pack<float, 4>,
+                   Pack<float, 8>, Pack<float, 16>, Pack<double, 2>, Pack<double, 4>, Pack<double, 8>,
+                   Pack<double, 16>) {
+    constexpr int N = num_lanes<P>;
+    const auto lane_of = [](int i) { return (5 * i + 3) % (2 * N); };
+    const P mixed = shuffled(counted<P>(0), counted<P>(N), lane_of);
+    for (int i = 0; i < N; ++i) {
+        CHECK(mixed[i] == RealOf<P>(lane_of(i)));
+    }
+}

@@ -19,12 +19,11 @@ constexpr Index num_vertices = 50;
 template <class S>
 using Tiles = HessianTiles<num_nodes, S>;
 
-/// Triples of vertices, what each vertex belongs to, and a random symmetric matrix for each.
+/// Triples of vertices and a random symmetric matrix for each.
 template <class S>
 struct Triples {
-    Connectivity<num_nodes> vertices{num_nodes,
-                                     3 * Tiles<S>::tile - 10};  // the last tile and its last pack are not full
-    std::vector<std::int32_t> offsets{0}, incidences;
+    // The last tile and its last pack are not full.
+    Connectivity<num_nodes> vertices{num_nodes, 3 * Tiles<S>::tile - 10};
     std::vector<Eigen::Matrix<S, 9, 9>> hessians;
     MatrixX<S> dense = MatrixX<S>::Zero(3 * num_vertices, 3 * num_vertices);
 
@@ -45,14 +44,6 @@ struct Triples {
                 }
             }
         }
-        for (Index v = 0; v < num_vertices; ++v) {
-            for (Index k = 0; k < vertices.size(); ++k) {
-                if (vertices.data()[k] == v) {
-                    incidences.push_back(std::int32_t(k));
-                }
-            }
-            offsets.push_back(std::int32_t(incidences.size()));
-        }
     }
 
     /// Of the free vertices, filled N by N.
@@ -66,7 +57,7 @@ struct Triples {
         }
         BlockMatrix<S> result{BlockPattern(std::move(neighbours))};
         Tiles<S> tiles;
-        tiles.bind(vertices, offsets, incidences, prescribed, result.pattern());
+        tiles.bind(vertices, prescribed, result.pattern());
         tiles.template add<N>(
             ThreadExecutor(num_threads),
             [&](Index first, Index count, S* slots) {

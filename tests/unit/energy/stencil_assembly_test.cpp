@@ -167,7 +167,8 @@ TEST_CASE("more stencils than a tile holds, several at a time, are added as one 
     };
     const auto gradients = [&](Index pack, double* slots) {
         each(pack, [&](Index s, Index lane) {
-            Eigen::Map<Assembly::GradientSlot>{slots + lane* 12} = stencils.gradient_of()(s);
+            using Columns = Eigen::Map<Assembly::GradientSlot, 0, Eigen::OuterStride<4 * N>>;
+            Columns(slots + Assembly::Gradients::column_offset<N>(0, int(lane))) = stencils.gradient_of()(s);
         });
     };
     const auto hessians = [&](Index pack, double* slots) {
