@@ -51,10 +51,11 @@ std::vector<Matrix3<Pack<S, natural_lanes<S>>>> packed_states() {
 /// Times `kernel` over all states; the results go to memory.
 template <class S, class States, class Kernel>
 void run(benchmark::State& state, const States& F, double flops_a_cell, const Kernel& kernel) {
-    std::vector<decltype(kernel(F.front()))> results(F.size());
+    using Result = decltype(kernel(F.front()));
+    std::vector<Result> results(F.size());
     for (auto iteration : state) {
         for (size_t i = 0; i < F.size(); ++i) {
-            results[i] = kernel(F[i]);
+            ::new (&results[i]) Result(kernel(F[i]));  // in place, as callers take it
         }
         benchmark::DoNotOptimize(results.data());
         benchmark::ClobberMemory();

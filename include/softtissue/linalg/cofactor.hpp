@@ -16,7 +16,7 @@ namespace softtissue {
 
 /// dJ/dF, which is J F^-T where F is invertible.
 template <FieldScalar Scalar>
-Matrix3<Scalar> cofactor(const Matrix3<Scalar>& F) {
+[[gnu::always_inline]] inline Matrix3<Scalar> cofactor(const Matrix3<Scalar>& F) {
     Matrix3<Scalar> cof;
     for (int j = 0; j < 3; ++j) {
         const int k = (j + 1) % 3;

@@ -31,7 +31,7 @@ namespace detail {
 
 /// The largest eigenvalue of K for a matrix of norm 1.
 template <RealLanes Scalar>
-Scalar largest_rotation_root(const Matrix3<Scalar>& F) {
+[[gnu::always_inline]] inline Scalar largest_rotation_root(const Matrix3<Scalar>& F) {
     constexpr int num_steps = 4;
     const Matrix3<Scalar> cof = cofactor(F);
     const Scalar constant = Scalar(4) * cof.squaredNorm();
@@ -46,7 +46,7 @@ Scalar largest_rotation_root(const Matrix3<Scalar>& F) {
 
 /// The column of the adjugate of a symmetric 4x4 matrix with the largest diagonal entry.
 template <RealLanes Scalar>
-Quaternion<Scalar> largest_adjugate_column(const Eigen::Matrix<Scalar, 4, 4>& M) {
+[[gnu::always_inline]] inline Quaternion<Scalar> largest_adjugate_column(const Eigen::Matrix<Scalar, 4, 4>& M) {
     using std::abs;
     const auto upper = [&](int i, int j) { return Scalar(M(0, i) * M(1, j) - M(0, j) * M(1, i)); };
     const auto lower = [&](int i, int j) { return Scalar(M(2, i) * M(3, j) - M(2, j) * M(3, i)); };

@@ -82,8 +82,9 @@ public:
 
     EnergyAndStress<Scalar> energy_and_first_piola(const Matrix3<Scalar>& F) const {
         const Matrix3<Scalar> cof = cofactor(F);
-        const Scalar pressure = volume_stress(determinant(F, cof));
-        return {(mu_ * (F.squaredNorm() - Scalar(3)) + pressure * pressure / lambda_) / Scalar(2),
+        const Scalar J = determinant(F, cof);
+        const Scalar pressure = volume_stress(J);
+        return {(mu_ * (F.squaredNorm() - Scalar(3)) + pressure * (J - Scalar(1) - mu_ / lambda_)) / Scalar(2),
                 mu_ * F + pressure * cof};
     }
 
