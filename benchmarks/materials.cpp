@@ -17,6 +17,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <new>
 #include <vector>
 
 namespace {

@@ -34,6 +34,13 @@ public:
         return 4 * (Index(N) * node + lane);
     }
 
+    /// The gradient of one of them, 3 x num_nodes.
+    template <int N>
+    static auto gradient_in(Scalar* slots, int lane) {
+        return Eigen::Map<Eigen::Matrix<Scalar, 3, num_nodes>, 0, Eigen::OuterStride<4 * N>>(slots +
+                                                                                             column_offset<N>(0, lane));
+    }
+
     GradientParts(const Connectivity<num_nodes>& stencils, Index num_vertices)
         : num_vertices_(num_vertices), columns_(num_nodes, stencils.cols()) {
         checked_index(num_nodes * stencils.cols(), "energy: nodes of all its cells");

@@ -5,7 +5,7 @@
 /// What        cell c in lane c % width of pack c / width; the lanes beyond the last cell repeat it
 /// Shapes      x 3 x vertices; gathered 3 x num_nodes of packs
 /// Why         a pack's node numbers lie together and are turned into places of numbers once
-/// Memory      4 num_nodes bytes a cell
+/// Memory      4 num_nodes bytes a cell, 4 a pack
 /// Tests       tests/unit/energy/node_packs_test.cpp
 #pragma once
 
@@ -49,17 +49,11 @@ public:
         SOFTTISSUE_ASSERT(pack >= 0 && pack < num_packs());
         const std::int32_t* const places = places_.data() + num_nodes * width * pack;
         Eigen::Matrix<Pack<S, width>, 3, num_nodes> result;
-        if (largest_places_[size_t(pack)] + 3 < x.size()) {
-            for (int a = 0; a < num_nodes; ++a) {
-                result.col(a) = gather_columns<width>(x.data(), places + a * width);
-            }
-        } else {  // the last column has no number behind it
-            for (int a = 0; a < num_nodes; ++a) {
-                for (int k = 0; k < 3; ++k) {
-                    result(k, a) =
-                        Pack<S, width>::from_lanes([&](int i) { return x.data()[places[a * width + i] + k]; });
-                }
-            }
+        const bool has_last = largest_places_[size_t(pack)] + 3 == x.size();
+        for (int a = 0; a < num_nodes; ++a) {
+            const std::int32_t* const of_node = places + a * width;
+            result.col(a) =
+                has_last ? gather_last_columns<width>(x.data(), of_node) : gather_columns<width>(x.data(), of_node);
         }
         return result;
     }

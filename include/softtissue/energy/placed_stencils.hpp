@@ -203,6 +203,7 @@ public:
 
 private:
     using Assembly = StencilAssembly<num_nodes, Scalar>;
+    using Gradients = typename Assembly::Gradients;
     using PackedNodes = Eigen::Matrix<Lanes, 3, num_nodes>;
     template <class T>
     using Blocks = Eigen::Matrix<T, 3, 3 * Assembly::num_block_pairs>;
@@ -221,20 +222,14 @@ private:
             by_nodes(k, 0) = -sum;
         }
         for (int m = 0; m < num_nodes; ++m) {
-            store_columns(Vector3<Lanes>(by_nodes.col(m)), slots + place_of(m, 0));
+            store_columns(Vector3<Lanes>(by_nodes.col(m)), slots + Gradients::template column_offset<width>(m, 0));
         }
         if (placement().has_maps()) {
-            for (int m = 0; m < num_nodes; ++m) {
-                for (int i = 0; i < width; ++i) {
-                    Eigen::Map<Vector3<Scalar>> force(slots + place_of(m, i));
-                    force = placement().pull_back(stencils()(m, stencil(pack, i)), force);
-                }
+            for (int i = 0; i < width; ++i) {
+                auto gradient = Gradients::template gradient_in<width>(slots, i);
+                pull_back_gradient(stencil(pack, i), gradient);
             }
         }
-    }
-
-    static constexpr Index place_of(int node, int lane) {
-        return Assembly::Gradients::template column_offset<width>(node, lane);
     }
 
     template <class Slot>

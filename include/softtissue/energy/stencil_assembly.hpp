@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// @file
-/// From stencils to vertices: slots per stencil, gathered in a fixed order.
+/// From stencils to vertices: energies, gradients and Hessians added up in a fixed order.
 ///
 /// What        every stencil (a cell, a hinge, ...) of num_nodes vertices writes its energy, gradient and Hessian into slots, which are
 ///             added up in a fixed order: the same bits for every executor. Gradients go part by part (gradient_parts.hpp),
@@ -21,7 +21,6 @@
 #include <softtissue/energy/prescribed_vertices.hpp>
 #include <softtissue/sparse/block_matrix.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -59,8 +58,7 @@ public:
     template <Executor E, class GradientOf>
     void add_gradient(const E& executor, const GradientOf& gradient_of, Matrix3X<Scalar>& gradient) {
         add_packed_gradient<1>(
-            executor,
-            [&](Index s, Scalar* slot) { Eigen::Map<GradientSlot, 0, Eigen::OuterStride<4>>{slot} = gradient_of(s); },
+            executor, [&](Index s, Scalar* slots) { Gradients::template gradient_in<1>(slots, 0) = gradient_of(s); },
             gradient);
     }
 

@@ -22,10 +22,14 @@ bool gathers() {
     }
     places[std::size_t(N) - 1] = 56;
     const Vector3<Pack<S, N>> gathered = gather_columns<N>(numbers.data(), places.data());
+    std::array<std::int32_t, std::size_t(N)> ends;
+    ends.fill(57);
+    const Vector3<Pack<S, N>> last = gather_last_columns<N>(numbers.data(), ends.data());
     bool all_there = true;
     for (int i = 0; i < N; ++i) {
         for (int k = 0; k < 3; ++k) {
-            all_there = all_there && gathered(k)[i] == numbers[std::size_t(places[std::size_t(i)] + k)];
+            all_there = all_there && gathered(k)[i] == numbers[std::size_t(places[std::size_t(i)] + k)] &&
+                        last(k)[i] == S(57 + k) - S(0.5);
         }
     }
     return all_there;

@@ -167,8 +167,7 @@ TEST_CASE("more stencils than a tile holds, several at a time, are added as one 
     };
     const auto gradients = [&](Index pack, double* slots) {
         each(pack, [&](Index s, Index lane) {
-            using Columns = Eigen::Map<Assembly::GradientSlot, 0, Eigen::OuterStride<4 * N>>;
-            Columns(slots + Assembly::Gradients::column_offset<N>(0, int(lane))) = stencils.gradient_of()(s);
+            Assembly::Gradients::gradient_in<N>(slots, int(lane)) = stencils.gradient_of()(s);
         });
     };
     const auto hessians = [&](Index pack, double* slots) {
